@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A scene as plain data: what docs/scene-format.md says, after reading and checking, before anything is built from it.
+// World space is the file's (glTF: Y up). Radiometric units; colours linear Rec. 709.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "math/vec.h"
+
+namespace wardmis {
+
+// A read-only array: either a view into the mapped file (kept alive by `owner`) or owned.
+template <class T>
+struct Array {
+  std::span<const T> data;
+  std::shared_ptr<const void> owner;
+
+  static Array of(std::vector<T> v) {
+    auto p = std::make_shared<const std::vector<T>>(std::move(v));
+    return {std::span<const T>(*p), p};
+  }
+  size_t size() const { return data.size(); }
+  bool empty() const { return data.empty(); }
+  const T& operator[](size_t i) const { return data[i]; }
+};
+
+// Pixels, rows from the bottom (v = 0 is row 0), already linear. 1 to 4 channels, interleaved.
+// 8-bit images that are sRGB stay 8-bit and are decoded at look-up: `srgb`.
+struct Image {
+  std::string name;
+  int width = 0, height = 0, channels = 0;
+  bool srgb = false;
+  std::vector<uint8_t> bytes;  // exactly one of the two is filled
+  std::vector<float> floats;
+};
+
+enum class Wrap : uint8_t { kRepeat, kClamp, kMirror };
+
+struct Texture {
+  int image = -1;
+  Wrap wrapU = Wrap::kRepeat, wrapV = Wrap::kRepeat;
+  bool nearest = false;
+};
+
+// One material input: a constant times, optionally, a texture looked up at (a u + b v + c, d u + e v + f).
+struct TextureUse {
+  int texture = -1;  // -1: none
+  int channel = 0;   // for scalars
+  float transform[6] = {1, 0, 0, 0, 1, 0};
+};
+struct ColorInput {
+  Rgb value{0, 0, 0};
+  TextureUse texture;
+};
+struct ScalarInput {
+  float value = 0;
+  TextureUse texture;
+};
+
+enum class WardVariant : uint8_t { kWard, kWardDur, kWardGmd };  // 1992, 2006, 2010
+
+struct Material {
+  std::string name;
+  WardVariant variant = WardVariant::kWardGmd;
+  ColorInput diffuse, specular, emission;  // emission: W m^-2 sr^-1, both sides
+  ScalarInput alphaX{0.1f, {}}, alphaY{0.1f, {}};
+  float rotation = 0;  // of the anisotropy, radians, counter-clockwise about the normal
+
+  bool hasTextures() const {
+    return (diffuse.texture.texture & specular.texture.texture & emission.texture.texture & alphaX.texture.texture &
+            alphaY.texture.texture) != -1;
+  }
+};
+
+// A run of triangles of one mesh with one material.
+struct Primitive {
+  int material = 0;
+  Array<uint32_t> indices;  // 3 per triangle, all < positions.size(); no degenerate triangles
+};
+
+// Vertex arrays shared by its primitives. normals and uvs are empty or as long as positions.
+struct MeshPart {
+  Array<Vec3f> positions;
+  Array<Vec3f> normals;  // shading normals, unit length not guaranteed
+  Array<Vec2f> uvs;      // v = 0 at the bottom
+  std::vector<Primitive> primitives;
+};
+struct Mesh {
+  std::string name;
+  std::vector<MeshPart> parts;
+};
+
+// Kinds of ray that see an object or a light. Bits.
+enum Visibility : uint8_t { kSeenByCamera = 1, kSeenByDiffuse = 2, kSeenByGlossy = 4, kCastsShadow = 8, kSeenByAll = 15 };
+
+struct Instance {
+  std::string name;
+  int mesh = 0;
+  Affine toWorld;
+  uint8_t visibility = kSeenByAll;
+};
+
+enum class LightType : uint8_t { kArea, kPoint, kSpot, kSun };
+
+struct Light {
+  std::string name;
+  LightType type = LightType::kPoint;
+  Affine toWorld;  // -z is where it looks
+  Rgb emitted{1, 1, 1};  // color times: area W m^-2 sr^-1, point and spot W sr^-1, sun W m^-2
+  // area
+  bool ellipse = false;
+  float sizeX = 1, sizeY = 1;  // local units; the axes' lengths scale them
+  float spread = 3.14159265f;  // full angle
+  // point, spot
+  float radius = 0;
+  bool facing = true;  // radius > 0: a disk that faces the shading point, else a true sphere
+  float angle = 0;     // spot: full cone; sun: full angular diameter
+  float blend = 0;
+  bool cosine = false;
+  uint8_t visibility = kSeenByAll;
+  bool shadow = true;
+};
+
+struct Camera {
+  std::string name;
+  Affine toWorld;  // orthonormal; looks along -z
+  bool orthographic = false;
+  float left = -0.36f, right = 0.36f, bottom = -0.24f, top = 0.24f;  // full frame; distance 1, or metres (orthographic)
+  float clipNear = 0, clipFar = 1e30f;                               // planar depths
+  float lensRadius = 0, focusDistance = 1;
+  int blades = 0;  // < 3: round
+  float bladeRotation = 0, bladeRatio = 1;
+};
+
+enum class FilterType : uint8_t { kBox, kGaussian, kBlackmanHarris };
+
+struct Film {
+  int width = 960, height = 540;                 // full frame
+  int x0 = 0, y0 = 0, x1 = 960, y1 = 540;        // border, from the bottom left, end exclusive
+  FilterType filter = FilterType::kBlackmanHarris;
+  float filterWidth = 1.5f;
+  float exposure = 1;
+  bool transparent = false;
+};
+
+struct World {
+  Rgb radiance{0, 0, 0};
+  int texture = -1;
+  float matrix[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major, Z-up direction -> the image's frame
+};
+
+struct Scene {
+  std::string path;
+  std::vector<Image> images;
+  std::vector<Texture> textures;
+  std::vector<Material> materials;  // never empty once something is rendered: index 0 stands in for "no material"
+  std::vector<Mesh> meshes;
+  std::vector<Instance> instances;
+  std::vector<Light> lights;
+  std::optional<Camera> camera;
+  Film film;
+  bool hasFilm = false;  // the file gave a resolution
+  World world;
+  bool zUp = false;  // frame of the Normal pass and of the world
+  std::vector<std::string> notes;    // from the exporter: what it could not translate
+  std::vector<std::string> leftOut;  // what the reader did not load, and why
+  uint64_t degenerateTriangles = 0;  // dropped
+};
+
+}  // namespace wardmis
