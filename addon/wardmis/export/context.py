@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the parts of an export share: the textures so far, the notes for the user, and whether to stop."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+from .model import ImageData, TextureData
+
+WRAPS = {"REPEAT": "repeat", "EXTEND": "clamp", "CLIP": "clamp", "MIRROR": "mirror"}
+
+
+class ExportError(Exception):
+    """The scene cannot be exported; the message says what, where and what to do."""
+
+
+class ExportCancelled(Exception):
+    """The user pressed Esc during the export."""
+
+
+class ExportContext:
+    """Handed to every part of the export; `owner` is the object being exported, for messages."""
+
+    def __init__(self, export_image: Callable[[Any], ImageData], cancelled: Callable[[], bool] | None = None) -> None:
+        self.images: list[ImageData] = []
+        self.textures: list[TextureData] = []
+        self.notes: list[str] = []
+        self.owner = ""
+        self._export_image = export_image
+        self._cancelled = cancelled
+        self._next_check = 0.0
+        self._image_index: dict[str, int] = {}
+        self._texture_index: dict[tuple[int, str, bool], int] = {}
+
+    def note(self, text: str) -> None:
+        """Tells the user, once, about something that is rendered other than Blender shows it."""
+        if text not in self.notes:
+            self.notes.append(text)
+
+    def texture(self, image: Any, interpolation: str = "Linear", extension: str = "REPEAT") -> int:
+        """The index of a texture that looks `image` (a bpy Image) up as an Image Texture node with these settings does.
+
+        How the pixels are decoded follows from the image's own colour space, as in Blender, not from what they are used for.
+        """
+        # the library is part of the name: two linked images may be called the same
+        key = image.name_full
+        if key not in self._image_index:
+            self._image_index[key] = len(self.images)
+            self.images.append(self._export_image(image))
+        if extension == "CLIP":
+            self.note(f"image '{image.name}': extension Clip is not supported; its border pixels are repeated instead")
+        texture = TextureData(self._image_index[key], WRAPS[extension], interpolation == "Closest")
+        texture_key = (texture.image, texture.wrap, texture.nearest)
+        if texture_key not in self._texture_index:
+            self._texture_index[texture_key] = len(self.textures)
+            self.textures.append(texture)
+        return self._texture_index[texture_key]
+
+    def check_cancelled(self) -> None:
+        """Cheap enough to be called for every object; asks at most ten times a second."""
+        now = time.monotonic()
+        if self._cancelled is not None and now >= self._next_check:
+            self._next_check = now + 0.1
+            if self._cancelled():
+                raise ExportCancelled

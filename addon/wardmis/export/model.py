@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A scene as plain data, between what Blender holds (gathered by the other files here) and GLB (written by glb.py).
+
+The field names and units are those of docs/scene-format.md. No bpy in here: everything can be made and tested without Blender.
+Matrices are row-major 4x4 numpy arrays in Blender's axes (Z up); the writer adds the turn to glTF's axes in one root node.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+Rgb = tuple[float, float, float]
+IDENTITY_TRANSFORM = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
+
+
+@dataclass
+class ImageData:
+    """An image: either a complete file (`encoded`) or raw `pixels`, exactly one of the two."""
+
+    name: str
+    color_space: str = "sRGB"  # how to decode: "sRGB" or "linear"
+    encoded: bytes | None = None  # the bytes of a file of type `mime_type`
+    mime_type: str = ""  # image/png, image/jpeg, image/x-exr, image/vnd.radiance
+    pixels: np.ndarray | None = None  # (height, width, channels 1..4), uint8 or float32, rows from the bottom
+
+
+@dataclass
+class TextureData:
+    """How an image is looked up. Its index in `SceneData.textures` is what materials and the world hold."""
+
+    image: int  # index into SceneData.images
+    wrap: str = "repeat"  # "repeat", "clamp", "mirror", in both directions
+    nearest: bool = False
+
+
+@dataclass
+class TextureUse:
+    """A look-up at u' = a u + b v + c, v' = d u + e v + f; v is Blender's, 0 at the bottom row."""
+
+    index: int  # from ExportContext.texture()
+    channel: int = 0  # for scalars: 0 red, 1 green, 2 blue, 3 alpha
+    transform: tuple[float, float, float, float, float, float] = IDENTITY_TRANSFORM
+
+
+@dataclass
+class ColorInput:
+    """`value`, multiplied by the texture if there is one."""
+
+    value: Rgb = (0.0, 0.0, 0.0)
+    texture: TextureUse | None = None
+
+
+@dataclass
+class ScalarInput:
+    """`value`, multiplied by one channel of the texture if there is one."""
+
+    value: float = 0.1
+    texture: TextureUse | None = None
+
+
+@dataclass
+class MaterialData:
+    name: str
+    variant: str = "ward-gmd"  # "ward", "ward-dur", "ward-gmd"
+    diffuse: ColorInput = field(default_factory=ColorInput)
+    specular: ColorInput = field(default_factory=ColorInput)
+    alpha_x: ScalarInput = field(default_factory=ScalarInput)
+    alpha_y: ScalarInput = field(default_factory=ScalarInput)
+    rotation: float = 0.0  # radians
+    emission: ColorInput = field(default_factory=ColorInput)  # W m^-2 sr^-1, both sides
+
+    @property
+    def needs_uv(self) -> bool:
+        """Whether a mesh with this material must carry UVs: for a texture, or for the direction of the anisotropy."""
+        inputs = (self.diffuse, self.specular, self.emission, self.alpha_x, self.alpha_y)
+        shiny = any(self.specular.value)
+        anisotropic = shiny and (self.alpha_x != self.alpha_y)
+        return anisotropic or any(i.texture is not None for i in inputs)
+
+
+@dataclass
+class PrimitiveData:
+    """The triangles of a mesh that have one material."""
+
+    material: int | None  # index into SceneData.materials
+    triangles: np.ndarray  # (n, 3) uint32 into the mesh's vertex arrays
+
+
+@dataclass
+class MeshData:
+    """Vertex arrays shared by primitives. Without normals the triangles are flat."""
+
+    name: str
+    positions: np.ndarray  # (n, 3) float32
+    normals: np.ndarray | None  # (n, 3) float32
+    uvs: np.ndarray | None  # (n, 2) float32, v = 0 at the bottom
+    primitives: list[PrimitiveData]
+
+
+@dataclass
+class InstanceData:
+    name: str
+    mesh: int  # index into SceneData.meshes
+    matrix: np.ndarray  # (4, 4) float64
+    hidden_from: frozenset[str] = frozenset()  # out of VISIBILITY
+
+
+VISIBILITY = ("camera", "diffuse", "glossy", "shadow")
+
+
+@dataclass
+class LightData:
+    """A light; `emission` holds radiance (area), intensity (point, spot) or irradiance (sun), without the colour."""
+
+    name: str
+    type: str  # "area", "point", "spot", "sun"
+    matrix: np.ndarray
+    color: Rgb
+    emission: float
+    shape: str = "rectangle"  # area: "rectangle", "ellipse"
+    size: tuple[float, float] = (1.0, 1.0)  # area
+    spread: float = np.pi  # area, full angle
+    radius: float = 0.0  # point, spot
+    facing: bool = True  # point, spot with a radius
+    angle: float = 0.0  # spot: full cone; sun: full angular diameter
+    blend: float = 0.0  # spot
+    cosine: bool = False  # spot
+    shadow: bool = True
+    hidden_from: frozenset[str] = frozenset()
+
+
+@dataclass
+class CameraData:
+    name: str
+    matrix: np.ndarray  # without scale
+    projection: str  # "perspective", "orthographic"
+    view_plane: tuple[float, float, float, float]  # left, right, bottom, top of the full frame
+    clip: tuple[float, float]
+    lens_radius: float = 0.0
+    focus_distance: float = 10.0
+    blades: int = 0
+    blade_rotation: float = 0.0
+    blade_ratio: float = 1.0
+
+
+@dataclass
+class FilmData:
+    resolution: tuple[int, int]
+    border: tuple[int, int, int, int]  # x0, y0, x1, y1 from the bottom left, end exclusive
+    filter_type: str = "blackman-harris"  # "box", "gaussian", "blackman-harris"
+    filter_width: float = 1.5
+    exposure: float = 1.0
+    transparent: bool = False
+
+
+@dataclass
+class WorldData:
+    radiance: Rgb = (0.0, 0.0, 0.0)
+    texture: int | None = None  # index into SceneData.textures
+    matrix: np.ndarray = field(default_factory=lambda: np.eye(3))
+
+
+@dataclass
+class SceneData:
+    generator: str
+    film: FilmData
+    camera: CameraData
+    world: WorldData = field(default_factory=WorldData)
+    images: list[ImageData] = field(default_factory=list)
+    textures: list[TextureData] = field(default_factory=list)
+    materials: list[MaterialData] = field(default_factory=list)
+    meshes: list[MeshData] = field(default_factory=list)
+    instances: list[InstanceData] = field(default_factory=list)
+    lights: list[LightData] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
