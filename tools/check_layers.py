@@ -18,7 +18,7 @@ WITH_BLENDER = ("addon/", "tests/addon/", "blend/")
 # These parts of the add-on are plain data: they must work, and be tested, without Blender.
 WITHOUT_BLENDER = ("addon/wardmis/export/model.py", "addon/wardmis/export/glb.py")
 
-INCLUDE = re.compile(r'^\s*#\s*include\s*(?:"([^"]+)"|<([^>]+)>)', re.MULTILINE)
+INCLUDE = re.compile(r'^[ \t]*#[ \t]*include\s*(?:"([^"]+)"|<([^>]+)>)', re.MULTILINE)
 
 
 def floor(folder: str) -> int | None:
