@@ -4,7 +4,7 @@
 # Sourced by ./dev.
 
 declare -A packages=(
-  [build]="g++ cmake ninja-build ccache libembree-dev libtbb-dev libopenimageio-dev libopenexr-dev libpng-dev libturbojpeg0-dev libsimdjson-dev
+  [build]="g++ cmake ninja-build ccache libembree-dev libtbb-dev libopenexr-dev libpng-dev libturbojpeg0-dev libsimdjson-dev
     libcli11-dev nlohmann-json3-dev libfmt-dev libgtest-dev libboost-math-dev python3"
   [blender]="blender python3-numpy python3-pil python3-openimageio fonts-dejavu-core patchelf"
   [test]="git clang clang-tidy shellcheck python3-venv"

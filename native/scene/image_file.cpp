@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/image_file.h"
 
+#include <IexBaseExc.h>
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
 #include <ImfInputFile.h>
+#include <fmt/format.h>
 #include <png.h>
 #include <turbojpeg.h>
 
@@ -17,28 +19,26 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
-
-#include "math/error.h"
+#include <stdexcept>
+#include <string_view>
 
 namespace wardmis {
 namespace {
 
 using Bytes = std::span<const std::byte>;
 
-[[noreturn]] void fail(const std::string& name, const std::string& what) {
-  throw Error(ExitCode::kScene, "image '" + name + "': " + what,
-              "open it in an image editor and save it again as PNG, JPEG, OpenEXR or Radiance HDR");
-}
+[[noreturn]] void fail(const std::string& what) { throw std::runtime_error(what); }
 
 // A file of a few bytes may claim a size that no memory holds: refuse before allocating.
-Image sized(const std::string& name, int64_t width, int64_t height, int channels) {
-  const int64_t limit = int64_t{1} << 28, side = 1 << 20;
-  if (width < 1 || height < 1) fail(name, "it has no pixels");
-  if (width > side || height > side || width * height * channels > limit)
-    fail(name, "it says that it has " + std::to_string(width) + " x " + std::to_string(height) +
-                   " pixels; at most 2^28 values are read");
+Image sized(Bytes file, int64_t width, int64_t height, int channels) {
+  const int64_t side = 1 << 16;
+  if (width < 1 || height < 1 || width > side || height > side)
+    fail(fmt::format("has {} x {} pixels; 1 to {} a side can be used", width, height, side));
+  // No format compresses better than this, so a larger claim is a lie (or a bomb).
+  const int64_t values = width * height * channels;
+  if (values > (int64_t{64} << 20) && values / 4096 > static_cast<int64_t>(file.size()))
+    fail(fmt::format("claims {} x {} pixels in {} bytes", width, height, file.size()));
   Image image;
-  image.name = name;
   image.width = static_cast<int>(width);
   image.height = static_cast<int>(height);
   image.channels = channels;
@@ -46,8 +46,6 @@ Image sized(const std::string& name, int64_t width, int64_t height, int channels
 }
 
 size_t valueCount(const Image& image) { return size_t(image.width) * image.height * image.channels; }
-
-float linearFromSrgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
 
 // ---- PNG ------------------------------------------------------------------------------------------------------------
 
@@ -91,66 +89,62 @@ bool pngReadRows(PngReader& reader, png_bytepp rows) {
   return true;
 }
 
-Image decodePng(Bytes file, const std::string& name, bool srgb) {
+FileImage decodePng(Bytes file) {
   PngReader reader{file};
   reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, pngError, [](png_structp, png_const_charp) {});
   reader.info = reader.png ? png_create_info_struct(reader.png) : nullptr;
   if (!reader.info) throw std::bad_alloc();
-  if (!pngReadHeader(reader)) fail(name, std::string("damaged PNG file: ") + reader.message.data());
+  if (!pngReadHeader(reader)) fail(std::string("is a damaged PNG file: ") + reader.message.data());
 
   const png_structp png = reader.png;
   const png_infop info = reader.info;
   Image image =
-      sized(name, png_get_image_width(png, info), png_get_image_height(png, info), png_get_channels(png, info));
+      sized(file, png_get_image_width(png, info), png_get_image_height(png, info), png_get_channels(png, info));
   const bool deep = png_get_bit_depth(png, info) == 16;
   const size_t rowBytes = png_get_rowbytes(png, info);
   std::vector<uint8_t> pixels(rowBytes * image.height);
   std::vector<png_bytep> rows(image.height);  // the file's first row is the image's top
   for (int y = 0; y < image.height; ++y) rows[y] = pixels.data() + rowBytes * (image.height - 1 - y);
-  if (!pngReadRows(reader, rows.data())) fail(name, std::string("damaged PNG file: ") + reader.message.data());
+  if (!pngReadRows(reader, rows.data())) fail(std::string("is a damaged PNG file: ") + reader.message.data());
 
   if (!deep) {
-    image.srgb = srgb;
     image.bytes = std::move(pixels);
-    return image;
+    return {std::move(image), true};
   }
-  const bool alpha = image.channels % 2 == 0;
   image.floats.resize(valueCount(image));
   for (size_t i = 0; i < image.floats.size(); ++i) {
     uint16_t value;
     std::memcpy(&value, pixels.data() + 2 * i, 2);
-    const bool colour = !alpha || (i + 1) % image.channels != 0;
-    image.floats[i] = srgb && colour ? linearFromSrgb(value / 65535.0f) : value / 65535.0f;
+    image.floats[i] = value / 65535.0f;
   }
-  return image;
+  return {std::move(image), true};
 }
 
 // ---- JPEG -----------------------------------------------------------------------------------------------------------
 
-Image decodeJpeg(Bytes file, const std::string& name, bool srgb) {
+FileImage decodeJpeg(Bytes file) {
   const std::unique_ptr<void, int (*)(tjhandle)> jpeg(tjInitDecompress(), tjDestroy);
   if (!jpeg) throw std::bad_alloc();
-  const auto damaged = [&] { fail(name, std::string("damaged JPEG file: ") + tjGetErrorStr2(jpeg.get())); };
+  const auto damaged = [&] { fail(std::string("is a damaged JPEG file: ") + tjGetErrorStr2(jpeg.get())); };
   const auto* data = reinterpret_cast<const unsigned char*>(file.data());
   int width = 0, height = 0, subsampling = 0, space = 0;
   if (tjDecompressHeader3(jpeg.get(), data, file.size(), &width, &height, &subsampling, &space) != 0) damaged();
-  if (space == TJCS_CMYK || space == TJCS_YCCK) fail(name, "a CMYK JPEG; RGB or grey is expected");
+  if (space == TJCS_CMYK || space == TJCS_YCCK) fail("is a CMYK JPEG; RGB or grey is expected");
 
   const bool grey = space == TJCS_GRAY;
-  Image image = sized(name, width, height, grey ? 1 : 3);
-  image.srgb = srgb;
+  Image image = sized(file, width, height, grey ? 1 : 3);
   image.bytes.resize(valueCount(image));
   if (tjDecompress2(jpeg.get(), data, file.size(), image.bytes.data(), width, 0, height, grey ? TJPF_GRAY : TJPF_RGB,
                     TJFLAG_BOTTOMUP) != 0)
     damaged();
-  return image;
+  return {std::move(image), true};
 }
 
 // ---- OpenEXR --------------------------------------------------------------------------------------------------------
 
 class MemoryStream : public Imf::IStream {
  public:
-  MemoryStream(Bytes file, const std::string& name) : IStream(name.c_str()), file_(file) {}
+  explicit MemoryStream(Bytes file) : IStream("image"), file_(file) {}
   bool read(char to[], int count) override {
     if (count < 0 || uint64_t(count) > file_.size() - position_) throw std::runtime_error("the file ends too early");
     std::memcpy(to, file_.data() + position_, size_t(count));
@@ -168,41 +162,35 @@ class MemoryStream : public Imf::IStream {
   uint64_t position_ = 0;
 };
 
-Image decodeExr(Bytes file, const std::string& name) {
-  try {
-    MemoryStream stream(file, name);
-    Imf::InputFile exr(stream, 0);
-    const Imf::ChannelList& channels = exr.header().channels();
-    std::vector<std::string> wanted;
-    for (const char* channel : {"R", "G", "B", "A"})
-      if (channels.findChannel(channel)) wanted.emplace_back(channel);
-    if (wanted.empty() && channels.findChannel("Y")) wanted = {"Y"};
-    if (wanted.empty()) fail(name, "an OpenEXR file without channels R, G, B or Y");
+FileImage decodeExr(Bytes file) try {
+  MemoryStream stream(file);
+  Imf::InputFile exr(stream, 0);
+  const Imf::ChannelList& channels = exr.header().channels();
+  std::vector<std::string> wanted;
+  for (const char* channel : {"R", "G", "B", "A"})
+    if (channels.findChannel(channel)) wanted.emplace_back(channel);
+  if (wanted.empty() && channels.findChannel("Y")) wanted = {"Y"};
+  if (wanted.empty()) fail("is an OpenEXR file without channels R, G, B or Y");
 
-    const Imath::Box2i window = exr.header().dataWindow();
-    Image image = sized(name, int64_t(window.max.x) - window.min.x + 1, int64_t(window.max.y) - window.min.y + 1,
-                        int(wanted.size()));
-    image.floats.resize(valueCount(image));
-    Imf::FrameBuffer frame;
-    for (size_t c = 0; c < wanted.size(); ++c)
-      frame.insert(wanted[c], Imf::Slice::Make(Imf::FLOAT, image.floats.data() + c, window,
-                                               sizeof(float) * image.channels,
-                                               sizeof(float) * image.channels * image.width));
-    exr.setFrameBuffer(frame);
-    exr.readPixels(window.min.y, window.max.y);
-    // EXR's first row is the top
-    const size_t row = size_t(image.width) * image.channels;
-    for (int y = 0; y < image.height / 2; ++y)
-      std::swap_ranges(image.floats.begin() + y * row, image.floats.begin() + (y + 1) * row,
-                       image.floats.begin() + (image.height - 1 - y) * row);
-    return image;
-  } catch (const Error&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& e) {
-    fail(name, std::string("damaged OpenEXR file: ") + e.what());
-  }
+  const Imath::Box2i window = exr.header().dataWindow();
+  Image image = sized(file, int64_t(window.max.x) - window.min.x + 1, int64_t(window.max.y) - window.min.y + 1,
+                      int(wanted.size()));
+  image.floats.resize(valueCount(image));
+  Imf::FrameBuffer frame;
+  for (size_t c = 0; c < wanted.size(); ++c)
+    frame.insert(wanted[c],
+                 Imf::Slice::Make(Imf::FLOAT, image.floats.data() + c, window, sizeof(float) * image.channels,
+                                  sizeof(float) * image.channels * image.width));
+  exr.setFrameBuffer(frame);
+  exr.readPixels(window.min.y, window.max.y);
+  // EXR's first row is the top
+  const size_t row = size_t(image.width) * image.channels;
+  for (int y = 0; y < image.height / 2; ++y)
+    std::swap_ranges(image.floats.begin() + y * row, image.floats.begin() + (y + 1) * row,
+                     image.floats.begin() + (image.height - 1 - y) * row);
+  return {std::move(image), false};
+} catch (const Iex::BaseExc& e) {
+  fail(std::string("is a damaged OpenEXR file: ") + e.what());
 }
 
 // ---- Radiance HDR ---------------------------------------------------------------------------------------------------
@@ -210,19 +198,19 @@ Image decodeExr(Bytes file, const std::string& name) {
 // G. Ward, Real Pixels (1991): a text header, "-Y height +X width", then rows of RGBE, flat or run-length coded.
 class HdrReader {
  public:
-  HdrReader(Bytes file, const std::string& name) : file_(file), name_(name) {}
+  explicit HdrReader(Bytes file) : file_(file) {}
 
-  Image read() {
+  FileImage read() {
     std::string text;
     bool rgbe = true;
     while (!(text = line()).empty())
       if (text.starts_with("FORMAT=")) rgbe = text == "FORMAT=32-bit_rle_rgbe";
-    if (!rgbe) fail(name_, "a Radiance file in another format than 32-bit_rle_rgbe");
+    if (!rgbe) fail("is a Radiance file in another format than 32-bit_rle_rgbe");
     text = line();
     int width = 0, height = 0;
     if (std::sscanf(text.c_str(), "-Y %d +X %d", &height, &width) != 2)
-      fail(name_, "a Radiance file whose size reads '" + text.substr(0, 40) + "'; '-Y height +X width' is expected");
-    Image image = sized(name_, width, height, 3);
+      fail("is a Radiance file whose size reads '" + text.substr(0, 40) + "'; '-Y height +X width' is expected");
+    Image image = sized(file_, width, height, 3);
     image.floats.resize(valueCount(image));
     std::vector<uint8_t> row(size_t(width) * 4);
     for (int y = height - 1; y >= 0; --y) {
@@ -234,12 +222,12 @@ class HdrReader {
           out[x * 3 + c] = p[3] ? std::ldexp(float(p[c]), p[3] - 136) : 0.0f;
         }
     }
-    return image;
+    return {std::move(image), false};
   }
 
  private:
   uint8_t byte() {
-    if (position_ >= file_.size()) fail(name_, "damaged Radiance file: it ends too early");
+    if (position_ >= file_.size()) fail("is a damaged Radiance file: it ends too early");
     return std::to_integer<uint8_t>(file_[position_++]);
   }
   std::array<uint8_t, 4> pixel() { return {byte(), byte(), byte(), byte()}; }  // braces: left to right
@@ -257,7 +245,7 @@ class HdrReader {
         const uint8_t code = byte();
         const bool run = code > 128;
         const size_t count = run ? code - 128 : code;
-        if (count == 0 || count > width - x) fail(name_, "damaged Radiance file: a run leaves its row");
+        if (count == 0 || count > width - x) fail("is a damaged Radiance file: a run leaves its row");
         const uint8_t value = run ? byte() : 0;
         for (size_t i = 0; i < count; ++i) row[(x++) * 4 + channel] = run ? value : byte();
       }
@@ -270,7 +258,8 @@ class HdrReader {
     for (size_t x = 0; x < width; next = x < width ? pixel() : next) {
       const bool repeat = next[0] == 1 && next[1] == 1 && next[2] == 1;
       const size_t count = repeat ? size_t(next[3]) << shift : 1;
-      if (count > width - x || (repeat && x == 0) || shift > 24) fail(name_, "damaged Radiance file: a run leaves its row");
+      if (count > width - x || (repeat && x == 0) || shift > 24)
+        fail("is a damaged Radiance file: a run leaves its row");
       const uint8_t* source = repeat ? row.data() + (x - 1) * 4 : next.data();
       for (size_t i = 0; i < count; ++i, ++x) std::copy_n(source, 4, row.data() + x * 4);
       shift = repeat ? shift + 8 : 0;
@@ -278,7 +267,6 @@ class HdrReader {
   }
 
   Bytes file_;
-  const std::string& name_;
   size_t position_ = 0;
 };
 
@@ -288,12 +276,13 @@ bool startsWith(Bytes file, std::string_view magic) {
 
 }  // namespace
 
-Image decodeImage(Bytes file, const std::string& name, bool srgb) {
-  if (startsWith(file, "\x89PNG")) return decodePng(file, name, srgb);
-  if (startsWith(file, "\xff\xd8\xff")) return decodeJpeg(file, name, srgb);
-  if (startsWith(file, "\x76\x2f\x31\x01")) return decodeExr(file, name);
-  if (startsWith(file, "#?")) return HdrReader(file, name).read();
-  fail(name, "neither PNG, JPEG, OpenEXR nor Radiance HDR");
+FileImage readImageFile(Bytes file) {
+  using namespace std::string_view_literals;
+  if (startsWith(file, "\x89PNG\r\n\x1A\n"sv)) return decodePng(file);
+  if (startsWith(file, "\xFF\xD8\xFF"sv)) return decodeJpeg(file);
+  if (startsWith(file, "\x76\x2F\x31\x01"sv)) return decodeExr(file);
+  if (startsWith(file, "#?"sv)) return HdrReader(file).read();
+  fail("is not a PNG, JPEG, OpenEXR or Radiance HDR file");
 }
 
 }  // namespace wardmis
