@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""WardMIS: a render engine with the Ward BRDF and multiple importance sampling under chosen allocations of the samples."""
+
+bl_info = {
+    "name": "WardMIS",
+    "author": "The WardMIS developers",
+    "version": (0, 1, 0),
+    "blender": (3, 4, 0),
+    "category": "Render",
+    "location": "Render Properties > Render Engine; File > Export",
+    "description": "Ward reflectance with multiple importance sampling under chosen allocations of the samples",
+}
+
+from . import engine, nodes, operators, panels, preferences, properties  # noqa: E402
+from .operators import export_scene  # noqa: E402
+
+__all__ = ["export_scene", "register", "unregister"]
+
+_PARTS = (preferences, properties, nodes, engine, operators, panels)
+
+
+def register() -> None:
+    for part in _PARTS:
+        part.register()
+
+
+def unregister() -> None:
+    for part in reversed(_PARTS):
+        part.unregister()

@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The render engine: exports, runs the renderer as a process, and brings its images back.
+
+Blender's traps that shape this file: an exception in render() would end in a saved blank image and exit code 0, and a render() without
+a result can crash Blender when it saves an EXR. A reported ERROR avoids both, so that every failure ends in one.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import tempfile
+import traceback
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import bpy
+
+from .export import ExportCancelled, ExportError, export_depsgraph
+from .export.camera import border, full_resolution
+from .passes import add_passes, register_passes
+from .preferences import renderer_path
+from .process import Renderer, RendererError
+from .properties import ALLOCATIONS_WITH_PILOT
+
+POLL_SECONDS = 0.1
+
+# where the next render shall write the scene, instead of rendering it: see scene_export_to()
+_export_to: Path | None = None
+
+
+@contextlib.contextmanager
+def scene_export_to(path: Path) -> Iterator[None]:
+    """Within it, a render with this engine only exports.
+
+    Blender evaluates a scene for a render (levels of subdivision, what is visible) for render engines alone; this is how an export gets
+    exactly the scene that F12 would show.
+    """
+    global _export_to
+    _export_to = path
+    try:
+        yield
+    finally:
+        _export_to = None
+
+
+class _Stopped(Exception):
+    """The user stopped the render."""
+
+
+class WARDMIS_RenderEngine(bpy.types.RenderEngine):
+    bl_idname = "WARDMIS"
+    bl_label = "WardMIS"
+    bl_use_preview = False
+    bl_use_gpu_context = False
+    bl_use_shading_nodes_custom = False
+    bl_use_eevee_viewport = True
+    bl_use_postprocess = True
+
+    def update_render_passes(self, scene: Any = None, renderlayer: Any = None) -> None:
+        register_passes(self, scene, renderlayer)
+
+    def render(self, depsgraph: Any) -> None:
+        try:
+            with tempfile.TemporaryDirectory(prefix="wardmis-", dir=bpy.app.tempdir) as folder:
+                _Render(self, depsgraph, Path(folder)).run()
+        except (ExportCancelled, _Stopped):
+            pass
+        except (ExportError, RendererError) as error:
+            self.report({"ERROR"}, f"WardMIS: {error}")
+        except OSError as error:
+            self.report({"ERROR"}, f"WardMIS: {error.strerror or error}: {error.filename or 'a file of the render'}")
+        except Exception as error:  # a mistake of ours; without the report Blender would save a blank image
+            traceback.print_exc()
+            self.report({"ERROR"}, f"WardMIS: an error in the add-on, please report it with the console's text: {error!r}")
+
+
+class _Render:
+    """One call of render(): one view layer of one frame."""
+
+    def __init__(self, engine: Any, depsgraph: Any, folder: Path) -> None:
+        self.engine = engine
+        self.depsgraph = depsgraph
+        self.layer = depsgraph.view_layer_eval
+        self.scene = depsgraph.scene_eval
+        self.scene_path = folder / "scene.glb"
+        self.image_path = folder / "image.exr"
+        self.preview_path = folder / "preview.exr"
+        self.result: Any = None
+        self.made: set[str] = set()
+        self.notes: set[str] = set()
+
+    def run(self) -> None:
+        if _export_to is not None:
+            self._export(_export_to)
+            return
+        if self.scene.render.use_multiview:
+            raise ExportError("stereoscopy is not supported; turn it off in Output Properties > Stereoscopy")
+        binary = renderer_path()  # before the export: a missing renderer should not take long to be told
+        self._export(self.scene_path)
+        try:
+            with Renderer([str(binary), "render", *self._arguments()]) as renderer:
+                self._follow(renderer)
+                self._show(self.image_path)
+        except Exception:
+            if self.result is not None and not self.engine.test_break():
+                self.engine.end_result(self.result, cancel=True)
+                self.result = None
+            raise
+        finally:
+            # a stopped render keeps the image so far
+            if self.result is not None:
+                self.engine.end_result(self.result)
+
+    def _export(self, path: Path) -> None:
+        self.engine.update_stats("", "Exporting the scene")
+        for note in export_depsgraph(self.depsgraph, path, self.engine.camera_override, self.engine.test_break):
+            self._warn(note)
+
+    def _warn(self, message: str) -> None:
+        if message not in self.notes:
+            self.notes.add(message)
+            self.engine.report({"WARNING"}, f"WardMIS: {message}")
+
+    def _arguments(self) -> list[str]:
+        settings, render = self.scene.wardmis, self.scene.render
+        arguments = [self.scene_path, "-o", self.image_path, "--preview", self.preview_path]
+        arguments += ["--progress", "json", "--watch-stdin", "--layer", self.layer.name]
+        arguments += ["--allocation", settings.allocation, "--weights", settings.weights]
+        arguments += ["--integrand", settings.integrand, "--integrator", settings.integrator]
+        arguments += ["--sampler", settings.sampler, "--seed", settings.seed, "--max-depth", settings.max_depth]
+        arguments += ["--samples-per-hit", settings.samples_per_hit, "--min-fraction", f"{settings.min_fraction:.6g}"]
+        if settings.stop_by == "samples":
+            arguments += ["--spp", settings.samples]
+        else:
+            arguments += ["--time", f"{settings.seconds:.6g}"]
+        if settings.allocation in ALLOCATIONS_WITH_PILOT:
+            arguments += ["--pilot-spp", settings.pilot_samples]
+        threads = settings.threads or (render.threads if render.threads_mode == "FIXED" else 0)
+        if threads:
+            arguments += ["--threads", threads]
+        return [str(argument) for argument in arguments]
+
+    def _follow(self, renderer: Renderer) -> None:
+        """Until the renderer has ended well. Raises RendererError if it ends otherwise, _Stopped if the user stops."""
+        while renderer.running():
+            for event in renderer.events(POLL_SECONDS):
+                self._handle(event)
+            if self.engine.test_break():
+                raise _Stopped
+        for event in renderer.finish():
+            self._handle(event)
+        if not self.image_path.is_file():
+            raise RendererError(f"the renderer ended without an image{renderer.said()}")
+
+    def _handle(self, event: dict[str, Any]) -> None:
+        kind = event.get("event")
+        if kind == "start":
+            self.made = {p["name"] for p in event["passes"]}
+        elif kind == "progress":
+            self._show_progress(event)
+        elif kind == "preview":
+            self._show(self.preview_path)
+        elif kind == "warning":
+            self._warn(event["message"])
+
+    def _show_progress(self, event: dict[str, Any]) -> None:
+        self.engine.update_progress(event["fraction"])
+        samples = f"{event['samples']}" + (f"/{event['of']}" if event.get("of") else "")
+        phase = "Pilot" if event["phase"] == "pilot" else "Sample"
+        left = f"Remaining: {_clock(event['left'])}" if event.get("left") is not None else ""
+        self.engine.update_stats(left, f"{phase} {samples}")
+
+    def _show(self, path: Path) -> None:
+        """Loads an image into the result; the first one begins it, as only then the passes are known."""
+        if self.result is None:
+            add_passes(self.engine, self.layer, self.made)
+            x0, y0, x1, y1 = border(self.scene.render, full_resolution(self.scene.render))
+            self.result = self.engine.begin_result(0, 0, x1 - x0, y1 - y0, layer=self.layer.name)
+        self.result.load_from_file(str(path))
+        self.engine.update_result(self.result)
+
+
+def _clock(seconds: float) -> str:
+    minutes, rest = divmod(max(0.0, seconds), 60)
+    return f"{int(minutes):02}:{rest:05.2f}"
+
+
+def register() -> None:
+    bpy.utils.register_class(WARDMIS_RenderEngine)
+
+
+def unregister() -> None:
+    bpy.utils.unregister_class(WARDMIS_RenderEngine)

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blender's scene -> plain data (model.py) -> a GLB file."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from typing import Any
+
+import bpy
+
+from .context import ExportCancelled, ExportError
+from .glb import write_glb
+from .scene import gather_scene
+
+__all__ = ["VERSION", "ExportCancelled", "ExportError", "export_depsgraph"]
+
+VERSION = "0.1.0"  # the same as in bl_info and blender_manifest.toml
+
+
+def export_depsgraph(
+    depsgraph: Any, path: str | os.PathLike[str], camera: Any = None, cancelled: Callable[[], bool] | None = None
+) -> list[str]:
+    """Writes what the render of `depsgraph` needs to `path`; returns the notes for the user.
+
+    Raises ExportError (the scene cannot be exported), OSError (the file cannot be written) or ExportCancelled.
+    """
+
+    def check_cancelled() -> None:
+        if cancelled is not None and cancelled():
+            raise ExportCancelled
+
+    generator = f"WardMIS {VERSION}, Blender {bpy.app.version_string}"
+    scene = gather_scene(depsgraph, generator, camera, cancelled)
+    write_glb(scene, path, check_cancelled)
+    return scene.notes

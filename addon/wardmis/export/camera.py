@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blender's camera -> the exact view plane of the full frame, and the film."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from .context import ExportError
+from .model import CameraData, FilmData
+
+
+def full_resolution(render: Any) -> tuple[int, int]:
+    """The pixels of the frame without its border, rounded down as Blender does."""
+    scale = render.resolution_percentage
+    return (max(1, render.resolution_x * scale // 100), max(1, render.resolution_y * scale // 100))
+
+
+def border(render: Any, resolution: tuple[int, int]) -> tuple[int, int, int, int]:
+    """x0, y0, x1, y1 from the bottom left, end exclusive; in single precision as Blender rounds."""
+    width, height = resolution
+    if not render.use_border:
+        return (0, 0, width, height)
+    x0, x1 = (int(np.float32(v) * np.float32(width)) for v in (render.border_min_x, render.border_max_x))
+    y0, y1 = (int(np.float32(v) * np.float32(height)) for v in (render.border_min_y, render.border_max_y))
+    if x1 <= x0 or y1 <= y0:
+        raise ExportError("the render region holds no pixel; draw a larger one (Ctrl-B) or turn Render Region off")
+    return (x0, y0, x1, y1)
+
+
+def export_film(scene: Any) -> FilmData:
+    settings = scene.wardmis
+    resolution = full_resolution(scene.render)
+    return FilmData(
+        resolution,
+        border(scene.render, resolution),
+        settings.filter_type.lower().replace("_", "-"),
+        settings.filter_width,
+        settings.film_exposure,
+        scene.render.film_transparent,
+    )
+
+
+def export_camera(camera: Any, render: Any) -> CameraData:
+    """`camera` is the evaluated object."""
+    if camera is None:
+        raise ExportError("the scene has no active camera; add one, or choose one in Scene Properties > Camera")
+    if camera.type != "CAMERA":
+        raise ExportError(f"object '{camera.name}' is the active camera, but is no camera; choose a camera in Scene Properties")
+    data = camera.data
+    if data.type not in {"PERSP", "ORTHO"}:
+        raise ExportError(
+            f"camera '{camera.name}' is panoramic, which WardMIS does not render; set Lens > Type to Perspective or Orthographic"
+        )
+    orthographic = data.type == "ORTHO"
+    matrix = np.array(camera.matrix_world)
+    lengths = np.linalg.norm(matrix[:3, :3], axis=0)
+    if not np.isfinite(matrix).all() or not lengths.all():
+        raise ExportError(f"camera '{camera.name}' has a scale of zero or a transform that is not finite; set its scale to 1")
+    matrix[:3, :3] /= lengths
+    result = CameraData(
+        camera.name,
+        matrix,
+        "orthographic" if orthographic else "perspective",
+        view_plane(data, render, full_resolution(render)),
+        (data.clip_start, data.clip_end),
+    )
+    if data.dof.use_dof:
+        aperture = data.dof.aperture_fstop * 2
+        result.lens_radius = (1.0 if orthographic else data.lens * 1e-3) / aperture
+        result.focus_distance = _focus_distance(camera, data.dof, matrix)
+        result.blades = data.dof.aperture_blades if data.dof.aperture_blades > 2 else 0
+        result.blade_rotation = data.dof.aperture_rotation
+        result.blade_ratio = data.dof.aperture_ratio
+    return result
+
+
+def view_plane(data: Any, render: Any, resolution: tuple[int, int]) -> tuple[float, float, float, float]:
+    """left, right, bottom, top: at distance 1 for a perspective camera, in metres for an orthographic one."""
+    x_ratio = resolution[0] * render.pixel_aspect_x
+    y_ratio = resolution[1] * render.pixel_aspect_y
+    horizontal = x_ratio > y_ratio if data.sensor_fit == "AUTO" else data.sensor_fit == "HORIZONTAL"
+    sensor = data.sensor_height if data.sensor_fit == "VERTICAL" else data.sensor_width
+    aspect = x_ratio / y_ratio if horizontal else y_ratio / x_ratio
+    x_half, y_half = (aspect, 1.0) if horizontal else (1.0, aspect)
+    # the longer side is 2 aspect long; shifts are measured in it
+    scale = data.ortho_scale / (2 * aspect) if data.type == "ORTHO" else 0.5 * sensor / data.lens / aspect
+    x_shift = 2 * aspect * data.shift_x
+    y_shift = 2 * aspect * data.shift_y
+    return (
+        (x_shift - x_half) * scale,
+        (x_shift + x_half) * scale,
+        (y_shift - y_half) * scale,
+        (y_shift + y_half) * scale,
+    )
+
+
+def _focus_distance(camera: Any, dof: Any, matrix: np.ndarray) -> float:
+    focus = dof.focus_object
+    if focus is None:
+        return float(dof.focus_distance)
+    target = focus.matrix_world
+    if dof.focus_subtarget and focus.pose is not None and dof.focus_subtarget in focus.pose.bones:
+        target = target @ focus.pose.bones[dof.focus_subtarget].matrix
+    return float(abs(matrix[:3, 2] @ (matrix[:3, 3] - np.array(target.translation))))

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blender's lights, in watts, -> radiance, intensity or irradiance as Cycles of the same version renders them.
+
+Cycles before 4.0 normalised area lights by 1/4 where later ones use 1/pi, dimmed spots by the cosine to their axis, and took a sun's
+disk for a flat one. Blender's scene unit scale does not enter.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from .. import compat
+from .context import ExportContext
+from .emission import constant_color, note_unsupported, strength, surface
+from .model import LightData, Rgb
+
+
+def export_light(
+    light: Any, name: str, matrix: np.ndarray, hidden_from: frozenset[str], context: ExportContext
+) -> LightData | None:
+    """None for a light that gives no light, and for Cycles' light portals, which are hints only."""
+    if light.type == "AREA" and getattr(getattr(light, "cycles", None), "is_portal", False):
+        return None
+    node_factor = _node_factor(light, context) if compat.uses_nodes(light) else (1.0, 1.0, 1.0)
+    power = light.energy * compat.light_exposure(light)
+    temperature = compat.light_temperature_color(light)
+    color = tuple(c * t * n for c, t, n in zip(light.color, temperature, node_factor))
+    if power < 0 or min(color) < 0:
+        context.note(f"light '{light.name}': negative light is not supported; the light is left out")
+        return None
+    if power == 0 or not any(color):
+        return None
+    data = LightData(name, light.type.lower(), matrix, color, 0.0, hidden_from=hidden_from)
+    data.shadow = compat.light_casts_shadow(light)
+    {"AREA": _area, "POINT": _point, "SPOT": _spot, "SUN": _sun}[light.type](light, power, data)
+    if not np.isfinite(data.emission):
+        context.note(f"light '{light.name}': its area is zero, so that it gives no light; set a size or a scale")
+        return None
+    return data
+
+
+def _node_factor(light: Any, context: ExportContext) -> Rgb:
+    """What an Emission node in the light's tree multiplies the light by."""
+    shader = surface(light, "light", context)
+    if shader is None:
+        return (0.0, 0.0, 0.0)
+    if shader.node.bl_idname != "ShaderNodeEmission":
+        note_unsupported(shader.node, light, "light", context, "the light's own colour and power are used alone")
+        return (1.0, 1.0, 1.0)
+    factor = strength(shader.node, light, "light", context)
+    r, g, b = constant_color(shader.node, light, "light", context)
+    return (r * factor, g * factor, b * factor)
+
+
+def _area(light: Any, power: float, data: LightData) -> None:
+    data.shape = "ellipse" if light.shape in {"DISK", "ELLIPSE"} else "rectangle"
+    data.size = (light.size, light.size_y if light.shape in {"RECTANGLE", "ELLIPSE"} else light.size)
+    data.spread = light.spread
+    axes = np.linalg.norm(data.matrix[:3, :2], axis=0) * data.size
+    area = float(axes[0] * axes[1]) * (math.pi / 4 if data.shape == "ellipse" else 1.0)
+    if area == 0:
+        data.emission = math.inf
+        return
+    divisor = area if compat.light_is_normalized(light) else 1.0
+    data.emission = power / (divisor * (math.pi if compat.LIGHTS_OF_4_0 else 4.0))
+
+
+def _point(light: Any, power: float, data: LightData) -> None:
+    data.radius = light.shadow_soft_size
+    data.facing = compat.light_has_soft_falloff(light)
+    data.emission = power / (4 * math.pi)
+    if data.radius > 0 and not compat.light_is_normalized(light):
+        data.emission *= math.pi * data.radius**2
+
+
+def _spot(light: Any, power: float, data: LightData) -> None:
+    _point(light, power, data)
+    data.angle = light.spot_size
+    data.blend = light.spot_blend
+    data.cosine = not compat.LIGHTS_OF_4_0
+
+
+def _sun(light: Any, power: float, data: LightData) -> None:
+    data.angle = light.angle
+    data.emission = power
+    half = light.angle / 2
+    if half > 0 and not compat.light_is_normalized(light):
+        data.emission *= math.pi * math.sin(half) ** 2
+    elif not compat.LIGHTS_OF_4_0:
+        data.emission *= 2 * math.cos(half) / (1 + math.cos(half))

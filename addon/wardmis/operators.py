@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""File > Export > WardMIS scene (.glb), and the same for scripts."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import bpy
+from bpy.props import StringProperty
+from bpy_extras.io_utils import ExportHelper
+
+from .engine import WARDMIS_RenderEngine, scene_export_to
+from .export import ExportError, export_depsgraph
+
+
+def export_scene(path: str | os.PathLike[str], depsgraph: Any = None) -> None:
+    """Writes the scene of `depsgraph`, or the scene as a render of the active view layer sees it, for the command `wardmis`.
+
+    Raises RuntimeError with a message for the user.
+    """
+    path = Path(path).absolute()
+    try:
+        if not path.parent.is_dir():
+            raise ExportError(f"the folder {path.parent} does not exist; create it, or choose another")
+        if depsgraph is not None:
+            export_depsgraph(depsgraph, path)
+        else:
+            _export_by_render(path)
+    except (ExportError, OSError) as error:
+        raise RuntimeError(f"WardMIS: {error}") from error
+
+
+def _export_by_render(path: Path) -> None:
+    scene, layer = bpy.context.scene, bpy.context.view_layer
+    engine = scene.render.engine
+    try:
+        scene.render.engine = WARDMIS_RenderEngine.bl_idname
+        with scene_export_to(path):
+            bpy.ops.render.render(scene=scene.name, layer=layer.name)
+    finally:
+        scene.render.engine = engine
+
+
+class WARDMIS_OT_export(bpy.types.Operator, ExportHelper):
+    bl_idname = "wardmis.export"
+    bl_label = "Export WardMIS Scene"
+    bl_description = "Write the scene as it would be rendered, for the command 'wardmis'"
+
+    filename_ext = ".glb"
+    filter_glob: StringProperty(default="*.glb", options={"HIDDEN"})
+
+    def execute(self, _context: Any) -> set[str]:
+        try:
+            export_scene(self.filepath)
+        except RuntimeError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        self.report({"INFO"}, f"Wrote {self.filepath}")
+        return {"FINISHED"}
+
+
+def _menu(self: Any, _context: Any) -> None:
+    self.layout.operator(WARDMIS_OT_export.bl_idname, text="WardMIS scene (.glb)")
+
+
+def register() -> None:
+    bpy.utils.register_class(WARDMIS_OT_export)
+    bpy.types.TOPBAR_MT_file_export.append(_menu)
+
+
+def unregister() -> None:
+    bpy.types.TOPBAR_MT_file_export.remove(_menu)
+    bpy.utils.unregister_class(WARDMIS_OT_export)

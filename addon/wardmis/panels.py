@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The panels in the Properties editor: our own, and Blender's that make sense with this engine."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import bpy
+
+from .engine import WARDMIS_RenderEngine
+from .properties import ALLOCATIONS_WITH_PILOT
+
+ENGINE = WARDMIS_RenderEngine.bl_idname
+
+# Blender's general panels that show settings without effect here, or that ours replace
+EXCLUDED = {
+    "DATA_PT_area",
+    "DATA_PT_falloff_curve",
+    "DATA_PT_light",
+    "DATA_PT_preview",
+    "DATA_PT_spot",
+    "NODE_DATA_PT_light",
+    "NODE_DATA_PT_spot",
+    "RENDER_PT_stereoscopy",
+}
+EXCLUDED_PREFIXES = ("RENDER_PT_freestyle", "VIEWLAYER_PT_freestyle", "MATERIAL_PT_freestyle")
+# Eevee's panels that edit what this engine reads, too
+INCLUDED = {
+    "DATA_PT_camera_dof",
+    "DATA_PT_camera_dof_aperture",
+    "EEVEE_MATERIAL_PT_context_material",
+    "EEVEE_MATERIAL_PT_surface",
+    "EEVEE_WORLD_PT_surface",
+}
+
+
+class _Panel(bpy.types.Panel):
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    COMPAT_ENGINES = {ENGINE}
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        return context.engine in cls.COMPAT_ENGINES
+
+    def _column(self) -> Any:
+        self.layout.use_property_split = True
+        self.layout.use_property_decorate = False
+        return self.layout.column()
+
+
+class _RenderPanel(_Panel):
+    bl_context = "render"
+
+
+def _row(column: Any, active: bool) -> Any:
+    """A row that is grey where its setting does not matter."""
+    row = column.row()
+    row.active = active
+    return row
+
+
+class WARDMIS_RENDER_PT_sampling(_RenderPanel):
+    bl_label = "Sampling"
+
+    def draw(self, context: Any) -> None:
+        settings, column = context.scene.wardmis, self._column()
+        column.row().prop(settings, "stop_by", expand=True)
+        column.prop(settings, settings.stop_by)
+        column.separator()
+        column.prop(settings, "sampler")
+        column.prop(settings, "seed")
+
+
+class WARDMIS_RENDER_PT_allocation(_RenderPanel):
+    bl_label = "Allocation"
+
+    def draw(self, context: Any) -> None:
+        settings, column = context.scene.wardmis, self._column()
+        column.prop(settings, "allocation")
+        column.prop(settings, "weights")
+        column.prop(settings, "integrand")
+        column.prop(settings, "samples_per_hit")
+        column.separator()
+        pilot = settings.allocation in ALLOCATIONS_WITH_PILOT
+        _row(column, pilot).prop(settings, "pilot_samples")
+        _row(column, settings.allocation != "equal").prop(settings, "min_fraction")
+
+
+class WARDMIS_RENDER_PT_light_paths(_RenderPanel):
+    bl_label = "Light Paths"
+
+    def draw(self, context: Any) -> None:
+        settings, column = context.scene.wardmis, self._column()
+        column.prop(settings, "integrator")
+        _row(column, settings.integrator == "path").prop(settings, "max_depth")
+
+
+class WARDMIS_RENDER_PT_film(_RenderPanel):
+    bl_label = "Film"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: Any) -> None:
+        settings, column = context.scene.wardmis, self._column()
+        column.prop(settings, "film_exposure")
+        column.prop(settings, "filter_type")
+        _row(column, settings.filter_type != "box").prop(settings, "filter_width")
+        column.prop(context.scene.render, "film_transparent", text="Transparent")
+
+
+class WARDMIS_RENDER_PT_performance(_RenderPanel):
+    bl_label = "Performance"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: Any) -> None:
+        self._column().prop(context.scene.wardmis, "threads")
+
+
+class WARDMIS_OBJECT_PT_ray_visibility(_Panel):
+    bl_label = "Ray Visibility"
+    bl_context = "object"
+    bl_parent_id = "OBJECT_PT_visibility"
+
+    def draw(self, context: Any) -> None:
+        column = self._column()
+        for kind in ("camera", "diffuse", "glossy", "shadow"):
+            column.prop(context.object, f"visible_{kind}", text=kind.title())
+
+
+class WARDMIS_LIGHT_PT_light(_Panel):
+    bl_label = "Light"
+    bl_context = "data"
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        return context.light is not None and super().poll(context)
+
+    def draw(self, context: Any) -> None:
+        light = context.light
+        self.layout.row().prop(light, "type", expand=True)
+        column = self._column()
+        for name in _light_settings(light):
+            if hasattr(light, name):  # some came with later versions of Blender
+                column.prop(light, name)
+        # the setting that the export reads: see compat.light_casts_shadow
+        own = getattr(light, "cycles", None)
+        column.prop(*((own, "cast_shadow") if hasattr(own, "cast_shadow") else (light, "use_shadow")))
+        if hasattr(light, "use_nodes"):
+            column.prop(light, "use_nodes")
+
+
+def _light_settings(light: Any) -> Iterator[str]:
+    yield "color"
+    yield "use_temperature"
+    if getattr(light, "use_temperature", False):
+        yield "temperature"
+    yield from ("energy", "exposure", "normalize")
+    if light.type in {"POINT", "SPOT"}:
+        yield from ("shadow_soft_size", "use_soft_falloff")
+    if light.type == "SPOT":
+        yield from ("spot_size", "spot_blend", "show_cone")
+    if light.type == "SUN":
+        yield "angle"
+    if light.type == "AREA":
+        yield from ("shape", "size")
+        if light.shape in {"RECTANGLE", "ELLIPSE"}:
+            yield "size_y"
+        yield "spread"
+
+
+_CLASSES = (
+    WARDMIS_RENDER_PT_sampling,
+    WARDMIS_RENDER_PT_allocation,
+    WARDMIS_RENDER_PT_light_paths,
+    WARDMIS_RENDER_PT_film,
+    WARDMIS_RENDER_PT_performance,
+    WARDMIS_OBJECT_PT_ray_visibility,
+    WARDMIS_LIGHT_PT_light,
+)
+
+
+def _compatible_panels() -> Iterator[Any]:
+    for panel in bpy.types.Panel.__subclasses__():
+        engines, name = getattr(panel, "COMPAT_ENGINES", ()), panel.__name__
+        general = "BLENDER_RENDER" in engines and name not in EXCLUDED and not name.startswith(EXCLUDED_PREFIXES)
+        if general or name in INCLUDED:
+            yield panel
+
+
+def register() -> None:
+    for cls in _CLASSES:
+        bpy.utils.register_class(cls)
+    for panel in _compatible_panels():
+        panel.COMPAT_ENGINES.add(ENGINE)
+
+
+def unregister() -> None:
+    for panel in _compatible_panels():
+        panel.COMPAT_ENGINES.discard(ENGINE)
+    for cls in reversed(_CLASSES):
+        bpy.utils.unregister_class(cls)
