@@ -8,6 +8,7 @@ a result can crash Blender when it saves an EXR. A reported ERROR avoids both, s
 from __future__ import annotations
 
 import contextlib
+import json
 import tempfile
 import traceback
 from collections.abc import Iterator
@@ -88,6 +89,7 @@ class _Render:
         self.preview_path = folder / "preview.exr"
         self.result: Any = None
         self.made: set[str] = set()
+        self.statistics: dict[str, Any] = {}
         self.notes: set[str] = set()
 
     def run(self) -> None:
@@ -111,6 +113,9 @@ class _Render:
             # a stopped render keeps the image so far
             if self.result is not None:
                 self.engine.end_result(self.result)
+            if self.statistics:  # saved files carry them, as they do Cycles' own
+                name = f"wardmis.{self.layer.name}.statistics"
+                self.engine.get_result().stamp_data_add_field(name, json.dumps(self.statistics))
 
     def _export(self, path: Path) -> None:
         self.engine.update_stats("", "Exporting the scene")
@@ -163,6 +168,8 @@ class _Render:
             self._show(self.preview_path)
         elif kind == "warning":
             self._warn(event["message"])
+        elif kind == "done":
+            self.statistics = event.get("stats", {})
 
     def _show_progress(self, event: dict[str, Any]) -> None:
         self.engine.update_progress(event["fraction"])
