@@ -28,9 +28,9 @@ class Column:
 
 
 def exposure(reference: Pixels) -> float:
-    """A power of two that brings the brighter parts just below white."""
+    """1, or for a bright scene the power of two that brings its brighter parts below white."""
     bright = float(np.percentile(reference[..., :3].mean(axis=-1), 98))
-    return 2.0 ** float(np.floor(-np.log2(bright))) if bright > 0 else 1.0
+    return 2.0 ** float(np.floor(-np.log2(max(bright, 1.0))))
 
 
 def displayed(pixels: Pixels, scale: float) -> Image.Image:

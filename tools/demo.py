@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The demonstration: each scene with each allocation at the same number of samples, and with Cycles, through Blender;
+then images, error images and figures in out/demo. Run by ./dev demo."""
+
+import argparse
+import hashlib
+import os
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import blender
+import metrics
+import table
+from blender import ROOT, Rendered
+from sheet import Column, contact_sheet
+
+SCENES = ("teapot", "veach")
+ALLOCATIONS = ("equal", "variance", "second-moment")
+PERCENTAGE = 50  # of the scene's resolution
+SAMPLES = 64  # camera samples per pixel, pilot included
+REFERENCE_SAMPLES = 2048
+REFERENCE_SEED = 1_000_003  # a stream of its own: nothing is compared with its own samples
+
+CYCLES_NOTE = (
+    "Cycles shows the same node as Beckmann instead of Ward reflection, so its difference from the reference is the models' "
+    "and the noise together, no error: no relMSE."
+)
+
+
+def wardmis(allocation: str, samples: int, seed: int) -> dict[str, Any]:
+    return {
+        "render.engine": "WARDMIS",
+        "render.resolution_percentage": PERCENTAGE,
+        "wardmis.allocation": allocation,
+        "wardmis.stop_by": "samples",
+        "wardmis.samples": samples,
+        "wardmis.seed": seed,
+    }
+
+
+def cycles() -> dict[str, Any]:
+    """The same number of camera samples, without what would change the image: clamping, blurring, guessing, denoising."""
+    return {
+        "render.engine": "CYCLES",
+        "render.resolution_percentage": PERCENTAGE,
+        "cycles.samples": SAMPLES,
+        "cycles.use_adaptive_sampling": False,
+        "cycles.use_denoising": False,
+        "cycles.sample_clamp_indirect": 0,
+        "cycles.blur_glossy": 0,
+        "cycles.light_sampling_threshold": 0,
+        "cycles.max_bounces": 8,
+        "cycles.diffuse_bounces": 8,
+        "cycles.glossy_bounces": 8,
+    }
+
+
+def say(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
+
+
+def reference(blend: Path) -> tuple[Rendered, bool]:
+    """Made once for a scene, a renderer and an add-on, and kept in build/demo: (image, made in this run)."""
+    settings = wardmis("equal", REFERENCE_SAMPLES, REFERENCE_SEED)
+    digest = hashlib.sha256(repr(settings).encode())
+    exporter = sorted((ROOT / "addon" / "wardmis").rglob("*.py"))
+    for path in [blend, Path(os.environ["WARDMIS_BINARY"]), *exporter]:
+        digest.update(path.read_bytes())
+    path = ROOT / "build" / "demo" / f"{blend.stem}-{digest.hexdigest()[:16]}.exr"
+    if path.exists():
+        return blender.rendered(path), False
+    for old in path.parent.glob(f"{blend.stem}-*.exr"):
+        old.unlink()
+    unfinished = path.with_suffix(".unfinished.exr")
+    blender.render(blend, unfinished, settings)
+    unfinished.rename(path)
+    return blender.rendered(path), True
+
+
+def figures(scene: str, label: str, image: Rendered, truth: Rendered | None) -> table.Row:
+    statistics = image.statistics
+    pixels = image.exr.passes["Combined"]
+    against = None if truth is None else truth.exr.passes["Combined"]
+    return table.Row(
+        scene=scene,
+        allocation=label,
+        seconds=image.seconds,
+        pilot_seconds=statistics["seconds"]["pilot"] if statistics else None,
+        samples_per_pixel=statistics["samples_per_pixel"] if statistics else SAMPLES,
+        samples=statistics["samples"]["total"] if statistics else None,
+        rays=statistics["rays"]["total"] if statistics else None,
+        rel_mse=None if against is None else metrics.rel_mse(pixels, against),
+        rel_mse_trimmed=None if against is None else metrics.rel_mse_trimmed(pixels, against),
+    )
+
+
+def demonstrate(scene: str, out: Path) -> tuple[list[table.Row], str]:
+    """The scene's rows, and a note on its reference. Writes the images and the sheet."""
+    blend = ROOT / "blend" / f"{scene}.blend"
+    say(f"{blend.name}: reference, {REFERENCE_SAMPLES} samples per pixel")
+    truth, made = reference(blend)
+    truth_pixels = truth.exr.passes["Combined"]
+    noise = metrics.reference_noise(truth_pixels, truth.exr.passes["Variance"])
+    truth_note = (
+        f"{scene}: the reference is this renderer's own, {truth.statistics['samples_per_pixel']} spp, seed {REFERENCE_SEED}, "
+        f"made {'in this run' if made else 'in an earlier run'} in {truth.seconds:.0f} s; its own noise adds about {noise:.2g} to each relMSE."
+    )
+    rows, columns = [], []
+    for allocation in ALLOCATIONS:
+        say(f"{blend.name}: {allocation}")
+        image = blender.render(blend, out / f"{scene}-{allocation}.exr", wardmis(allocation, SAMPLES, seed=1))
+        row = figures(scene, allocation, image, truth)
+        rows.append(row)
+        lines = [f"{row.samples_per_pixel} spp, {row.samples:,} samples", f"{row.seconds:.1f} s, relMSE {row.rel_mse:.4f}"]
+        columns.append(Column(allocation, image.exr.passes["Combined"], lines))
+    say(f"{blend.name}: Cycles")
+    image = blender.render(blend, out / f"{scene}-cycles.exr", cycles())
+    row = figures(scene, "Cycles", image, None)
+    rows.append(row)
+    lines = [f"{row.samples_per_pixel} spp, {row.seconds:.1f} s", "Beckmann, not Ward"]
+    columns.append(Column("Cycles", image.exr.passes["Combined"], lines, "model difference + noise"))
+
+    height, width = truth_pixels.shape[:2]
+    lines = [f"{truth.statistics['samples_per_pixel']} spp, another seed", f"own noise: relMSE {noise:.1g}"]
+    contact_sheet(
+        f"{blend.name}   {width} x {height}",
+        Column("reference", truth_pixels, lines),
+        columns,
+        [metrics.FORMULA + ". Seconds: pilot included.", CYCLES_NOTE],
+    ).save(out / f"{scene}.png", optimize=True)
+    return rows, truth_note
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(prog="./dev demo", description=__doc__)
+    parser.add_argument("scenes", nargs="*", default=SCENES, help="names of files in blend/ (default: %(default)s)")
+    parser.add_argument("--out", type=Path, default=ROOT / "out" / "demo")
+    arguments = parser.parse_args()
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    began = time.monotonic()
+    rows: list[table.Row] = []
+    notes = [
+        f"{metrics.FORMULA}.",
+        "Seconds: pilot and render, without export and loading; one run each, so small differences mean nothing.",
+    ]
+    try:
+        for scene in arguments.scenes:
+            scene_rows, note = demonstrate(scene, arguments.out)
+            rows += scene_rows
+            notes.append(note)
+    except blender.RenderFailed as error:
+        sys.exit(f"demo: {error}")
+    notes.append(CYCLES_NOTE)
+    (arguments.out / "table.md").write_text(table.markdown(rows, notes))
+    (arguments.out / "table.json").write_text(table.as_json(rows, notes))
+    print(table.plain(rows, notes))
+    print(f"\n{arguments.out}: images, sheets, table.md, table.json; {time.monotonic() - began:.0f} s")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
