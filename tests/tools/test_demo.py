@@ -117,13 +117,13 @@ class Sheet(unittest.TestCase):
 
     def test_images_lie_above_their_errors(self):
         height, width = 120, 380
-        reference = sheet.Column("reference", flat(0.2140, height, width), ["a", "b"])
-        columns = [sheet.Column("equal", flat(1.0, height, width), ["a", "b"]) for _ in range(2)]
-        made = np.asarray(sheet.contact_sheet("heading", reference, columns, ["note"]))
-        self.assertEqual((made == (127, 127, 127)).all(axis=-1).sum(), height * width)
-        beside = made[:, sheet.MARGIN + width + sheet.GAP :]  # without the reference and the colour bar
-        images = (beside == (255, 255, 255)).all(axis=-1)
-        errors = (beside == sheet.COLOURS[-1]).all(axis=-1)
+        green, red = np.tile(np.float32([0, 1, 0, 1]), (height, width, 1)), np.tile(np.float32([1, 0, 0, 1]), (height, width, 1))
+        columns = [sheet.Column("equal", red, ["a", "b"]) for _ in range(2)]
+        made = np.asarray(sheet.contact_sheet("heading", sheet.Column("reference", green, ["a", "b"]), columns, ["note"]))
+        self.assertEqual((made == (0, 255, 0)).all(axis=-1).sum(), height * width)
+        images = (made == (255, 0, 0)).all(axis=-1)
+        beside = np.arange(made.shape[1]) >= sheet.MARGIN + width  # the colour bar is under the reference
+        errors = (made == sheet.COLOURS[-1]).all(axis=-1) & beside
         self.assertEqual((images.sum(), errors.sum()), (2 * height * width, 2 * height * width))
         self.assertGreater(np.nonzero(errors)[0].min(), np.nonzero(images)[0].max())
 
