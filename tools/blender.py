@@ -30,7 +30,9 @@ def run(*arguments: str | Path) -> str:
     if "WARDMIS_BINARY" not in os.environ:
         raise RenderFailed("start this through ./dev, which sets up Blender's environment")
     command = [os.environ["BLENDER"], "--background", "--addons", "wardmis", *map(str, arguments)]
-    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, stdin=subprocess.DEVNULL)
+    done = subprocess.run(
+        command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, stdin=subprocess.DEVNULL
+    )
     if done.returncode != 0:
         end = "\n".join(done.stdout.splitlines()[-12:])
         raise RenderFailed(f"'{' '.join(command)}' ended with exit code {done.returncode}:\n{end}")

@@ -113,7 +113,10 @@ def demonstrate(scene: str, out: Path) -> tuple[list[table.Row], str]:
         image = blender.render(blend, out / f"{scene}-{allocation}.exr", wardmis(allocation, SAMPLES, seed=1))
         row = figures(scene, allocation, image, truth)
         rows.append(row)
-        lines = [f"{row.samples_per_pixel} spp, {row.samples:,} samples", f"{row.seconds:.1f} s, relMSE {row.rel_mse:.4f}"]
+        lines = [
+            f"{row.samples_per_pixel} spp, {row.samples:,} samples",
+            f"{row.seconds:.1f} s, relMSE {row.rel_mse:.4f}",
+        ]
         columns.append(Column(allocation, image.exr.passes["Combined"], lines))
     say(f"{blend.name}: Cycles")
     image = blender.render(blend, out / f"{scene}-cycles.exr", cycles())

@@ -27,7 +27,9 @@ def version() -> str:
     """The three places that say it must agree: the renderer, and the add-on's two kinds of description."""
     found = {
         "CMakeLists.txt": re.search(r"project\(\w+ VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text()),
-        "blender_manifest.toml": re.search(r'^version = "([\d.]+)"', (ADDON / "blender_manifest.toml").read_text(), re.M),
+        "blender_manifest.toml": re.search(
+            r'^version = "([\d.]+)"', (ADDON / "blender_manifest.toml").read_text(), re.M
+        ),
         "__init__.py": re.search(r'"version": \(([\d, ]+)\)', (ADDON / "__init__.py").read_text()),
     }
     versions = {place: match[1].replace(", ", ".") if match else "none" for place, match in found.items()}

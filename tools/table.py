@@ -18,7 +18,17 @@ class Row:
     rel_mse_trimmed: float | None
 
 
-HEADINGS = ["scene", "allocation", "seconds", "of it pilot", "spp", "samples", "rays", "relMSE", "relMSE without worst 0.1 %"]
+HEADINGS = [
+    "scene",
+    "allocation",
+    "seconds",
+    "of it pilot",
+    "spp",
+    "samples",
+    "rays",
+    "relMSE",
+    "relMSE without worst 0.1 %",
+]
 
 
 def cells(row: Row) -> list[str]:
@@ -42,7 +52,10 @@ def aligned(rows: list[Row]) -> list[list[str]]:
     table = [HEADINGS, *map(cells, rows)]
     widths = [max(len(line[i]) for line in table) for i in range(len(HEADINGS))]
     return [
-        [cell.ljust(width) if i < 2 else cell.rjust(width) for i, (cell, width) in enumerate(zip(line, widths, strict=True))]
+        [
+            cell.ljust(width) if i < 2 else cell.rjust(width)
+            for i, (cell, width) in enumerate(zip(line, widths, strict=True))
+        ]
         for line in table
     ]
 

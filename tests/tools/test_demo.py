@@ -31,7 +31,9 @@ class Metrics(unittest.TestCase):
         image = flat(0.6)
         image[3, 4, :3] = 1000.0
         self.assertGreater(metrics.rel_mse(image, flat(0.5)), 1000)
-        self.assertAlmostEqual(metrics.rel_mse_trimmed(image, flat(0.5)), metrics.rel_mse(flat(0.6), flat(0.5)), places=6)
+        self.assertAlmostEqual(
+            metrics.rel_mse_trimmed(image, flat(0.5)), metrics.rel_mse(flat(0.6), flat(0.5)), places=6
+        )
 
     def test_noise_of_the_reference_is_what_it_adds(self):
         random = np.random.default_rng(7)
@@ -117,9 +119,14 @@ class Sheet(unittest.TestCase):
 
     def test_images_lie_above_their_errors(self):
         height, width = 120, 380
-        green, red = np.tile(np.float32([0, 1, 0, 1]), (height, width, 1)), np.tile(np.float32([1, 0, 0, 1]), (height, width, 1))
+        green, red = (
+            np.tile(np.float32([0, 1, 0, 1]), (height, width, 1)),
+            np.tile(np.float32([1, 0, 0, 1]), (height, width, 1)),
+        )
         columns = [sheet.Column("equal", red, ["a", "b"]) for _ in range(2)]
-        made = np.asarray(sheet.contact_sheet("heading", sheet.Column("reference", green, ["a", "b"]), columns, ["note"]))
+        made = np.asarray(
+            sheet.contact_sheet("heading", sheet.Column("reference", green, ["a", "b"]), columns, ["note"])
+        )
         self.assertEqual((made == (0, 255, 0)).all(axis=-1).sum(), height * width)
         images = (made == (255, 0, 0)).all(axis=-1)
         beside = np.arange(made.shape[1]) >= sheet.MARGIN + width  # the colour bar is under the reference
