@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `materials`, `textures` and `images`: only what is used is read, and images are decoded last, all at once.
+#pragma once
+
+#include <map>
+#include <unordered_map>
+#include <utility>
+
+#include "scene/glb_file.h"
+#include "scene/glb_leftout.h"
+#include "scene/image.h"
+#include "scene/scene.h"
+
+namespace wardmis {
+
+class Materials {
+ public:
+  Materials(const Json& root, Buffers& buffers, LeftOut& leftOut);
+
+  // The index in Scene::materials of a primitive's material, read when it is first used.
+  int use(const Json& primitive);
+  // Whether the material needs texture coordinates: for textures, or as the direction of its anisotropy.
+  bool needsUvs(int material) const;
+  // The world's texture; its index in Scene::textures is known after finish().
+  void useWorldTexture(const Json& index);
+
+  // Decodes the images and moves everything into the scene.
+  void finish(Scene& scene);
+
+ private:
+  // A core material whose inputs need their textures combined texel by texel.
+  struct Bake {
+    Json json;
+    int material;  // in read_
+    Rgb base;
+    float metallic, roughness;
+    TextureUse baseTexture, roughnessTexture;
+  };
+  struct PendingImage {
+    Json json;
+    ColorSpace space;
+    std::string neededBy;
+  };
+
+  Material ward(const Json& extension);
+  Material core(const Json& json);
+  void readColor(const Json& extension, std::string_view key, ColorInput& out);
+  void readAlpha(const Json& extension, std::string_view key, ScalarInput& out);
+  TextureUse wardTexture(const Json& json, bool isColor);
+  std::optional<TextureUse> coreTexture(const Json& parent, std::string_view key, bool isColor);
+  int texture(const Json& index, bool isColor);
+  int image(const Json& index, bool isColor);
+  Bytes fetch(const PendingImage& pending);
+  static DecodedImage decode(const PendingImage& pending, const Bytes& bytes, ImageBudget& budget);
+  void bake(const Bake& bake, ImageBudget& budget);
+  int addImage(Image image, const Texture& like);
+
+  JsonArray materials_, textures_, samplers_, images_;
+  Buffers& buffers_;
+  LeftOut& leftOut_;
+  std::string user_;  // whose textures are being read, for messages
+
+  Scene read_;  // materials as read, with textures that finish() may combine or drop
+  std::unordered_map<size_t, int> materialOf_;
+  int defaultMaterial_ = -1;
+  std::map<std::pair<size_t, bool>, int> textureOf_;  // by index in the file, and whether it is a colour
+  std::map<std::pair<size_t, ColorSpace>, int> imageOf_;
+  std::vector<PendingImage> pending_;  // of read_.images
+  std::vector<Bake> bakes_;
+  int worldTexture_ = -1;
+};
+
+}  // namespace wardmis

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `nodes` and `scenes`: the hierarchy, checked, and what it places in the world.
+#pragma once
+
+#include <vector>
+
+#include "scene/glb_accessor.h"
+#include "scene/glb_leftout.h"
+#include "scene/glb_mesh.h"
+#include "scene/scene.h"
+
+namespace wardmis {
+
+// Fills the scene's instances, lights and camera. The film must have been read.
+void readNodes(const Json& root, Accessors& accessors, Buffers& buffers, Meshes& meshes, LeftOut& leftOut,
+               Scene& scene);
+
+}  // namespace wardmis

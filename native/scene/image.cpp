@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/image.h"
+
+#include <fmt/format.h>
+
+#include <cfloat>
+#include <cstring>
+
+#include "scene/image_file.h"
+#include "scene/texture.h"
+
+namespace wardmis {
+namespace {
+
+// Of float images: colours become linear, and what no renderer can use becomes 0.
+DecodedImage finished(Image image, ColorSpace space) {
+  DecodedImage out{std::move(image), 0};
+  Image& im = out.image;
+  if (im.floats.empty()) {
+    im.srgb = space != ColorSpace::kLinear;
+    return out;
+  }
+  for (float& v : im.floats) {
+    const bool right = (v >= 0) & (v <= FLT_MAX);
+    out.mended += !right;
+    v = right ? v : 0;
+  }
+  if (space == ColorSpace::kSrgb)
+    for (size_t i = 0; i < im.floats.size(); i++)
+      if (!isAlpha(im, static_cast<int>(i % im.channels))) im.floats[i] = srgbToLinear(im.floats[i]);
+  return out;
+}
+
+}  // namespace
+
+DecodedImage decodeImage(std::span<const std::byte> file, ColorSpace space, ImageBudget& budget) {
+  FileImage read = [&] {
+    try {
+      return readImageFile(file);
+    } catch (const std::runtime_error& e) {
+      throw ImageError(e.what());
+    }
+  }();
+  if (!budget.take(read.image.bytes.size() + read.image.floats.size() * sizeof(float)))
+    throw ImageError("is one of too many images with the same data");
+  if (space == ColorSpace::kAuto) space = read.integers ? ColorSpace::kSrgb : ColorSpace::kLinear;
+  return finished(std::move(read.image), space);
+}
+
+DecodedImage rawImage(std::span<const std::byte> data, int width, int height, int channels, bool floats,
+                      ColorSpace space, ImageBudget& budget) {
+  Image image;
+  image.width = width;
+  image.height = height;
+  image.channels = channels;
+  const size_t values = size_t(width) * height * channels;
+  if (data.size() != values * (floats ? 4 : 1))
+    throw ImageError(fmt::format("{} x {} pixels of {} channels need {} bytes, found {}", width, height, channels,
+                                 values * (floats ? 4 : 1), data.size()));
+  if (!budget.take(data.size())) throw ImageError("is one of too many images with the same data");
+  if (floats) {
+    image.floats.resize(values);
+    std::memcpy(image.floats.data(), data.data(), data.size());
+  } else {
+    image.bytes.resize(values);
+    std::memcpy(image.bytes.data(), data.data(), data.size());
+  }
+  if (space == ColorSpace::kAuto) space = floats ? ColorSpace::kLinear : ColorSpace::kSrgb;
+  return finished(std::move(image), space);
+}
+
+}  // namespace wardmis

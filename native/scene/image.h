@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Decodes image files that are in memory.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <stdexcept>
+
+#include "scene/scene.h"
+
+namespace wardmis {
+
+// How the numbers of an image stand for light. kAuto: sRGB for integers, linear for floats.
+enum class ColorSpace : uint8_t { kAuto, kSrgb, kLinear };
+
+struct DecodedImage {
+  Image image;
+  uint64_t mended = 0;  // values that were not finite, or negative, and were set to 0
+};
+
+constexpr int kLargestImageSide = 1 << 16;
+
+// Says what is wrong with an image; the caller knows its name and place.
+struct ImageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// Bytes that the decoded images of a scene may take together. No format packs better than about 1 : 1000, so that what
+// asks for more is a lie or a bomb.
+class ImageBudget {
+ public:
+  explicit ImageBudget(uint64_t fileBytes) : left_((uint64_t(1) << 28) + 4096 * fileBytes) {}
+  bool take(uint64_t bytes) {
+    uint64_t left = left_;
+    while (bytes <= left)
+      if (left_.compare_exchange_weak(left, left - bytes)) return true;
+    return false;
+  }
+
+ private:
+  std::atomic<uint64_t> left_;  // images are decoded in parallel
+};
+
+// A PNG, JPEG, OpenEXR or Radiance HDR file, told by its first bytes.
+DecodedImage decodeImage(std::span<const std::byte> file, ColorSpace space, ImageBudget& budget);
+
+// Raw pixels of 8 bits or 32-bit floats, rows from the bottom, as `data` holds them: exactly w * h * channels values.
+DecodedImage rawImage(std::span<const std::byte> data, int width, int height, int channels, bool floats,
+                      ColorSpace space, ImageBudget& budget);
+
+}  // namespace wardmis
