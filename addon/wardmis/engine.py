@@ -19,7 +19,7 @@ import bpy
 
 from .export import ExportCancelled, ExportError, export_depsgraph
 from .export.camera import border, full_resolution
-from .passes import add_passes, register_passes
+from .passes import register_passes
 from .preferences import renderer_path
 from .process import Renderer, RendererError
 from .properties import ALLOCATIONS_WITH_PILOT
@@ -88,7 +88,6 @@ class _Render:
         self.image_path = folder / "image.exr"
         self.preview_path = folder / "preview.exr"
         self.result: Any = None
-        self.made: set[str] = set()
         self.statistics: dict[str, Any] = {}
         self.notes: set[str] = set()
 
@@ -129,8 +128,10 @@ class _Render:
 
     def _arguments(self) -> list[str]:
         settings, render = self.scene.wardmis, self.scene.render
-        arguments = [self.scene_path, "-o", self.image_path, "--preview", self.preview_path]
-        arguments += ["--progress", "json", "--watch-stdin", "--layer", self.layer.name]
+        arguments = [self.scene_path, "-o", self.image_path, "--layer", self.layer.name]
+        arguments += ["--progress", "json", "--watch-stdin"]
+        if not bpy.app.background:  # nobody watches
+            arguments += ["--preview", self.preview_path]
         arguments += ["--allocation", settings.allocation, "--weights", settings.weights]
         arguments += ["--integrand", settings.integrand, "--integrator", settings.integrator]
         arguments += ["--sampler", settings.sampler, "--seed", settings.seed, "--max-depth", settings.max_depth]
@@ -160,9 +161,7 @@ class _Render:
 
     def _handle(self, event: dict[str, Any]) -> None:
         kind = event.get("event")
-        if kind == "start":
-            self.made = {p["name"] for p in event["passes"]}
-        elif kind == "progress":
+        if kind == "progress":
             self._show_progress(event)
         elif kind == "preview":
             self._show(self.preview_path)
@@ -179,12 +178,14 @@ class _Render:
         self.engine.update_stats(left, f"{phase} {samples}")
 
     def _show(self, path: Path) -> None:
-        """Loads an image into the result; the first one begins it, as only then the passes are known."""
+        """Loads an image into the result, which begins with the first one."""
         if self.result is None:
-            add_passes(self.engine, self.layer, self.made)
             x0, y0, x1, y1 = border(self.scene.render, full_resolution(self.scene.render))
             self.result = self.engine.begin_result(0, 0, x1 - x0, y1 - y0, layer=self.layer.name)
-        self.result.load_from_file(str(path))
+        try:
+            self.result.load_from_file(str(path))
+        except RuntimeError as error:
+            raise RendererError(f"Blender cannot read the image of the renderer: {str(error).strip()}") from error
         self.engine.update_result(self.result)
 
 

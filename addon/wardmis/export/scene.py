@@ -118,6 +118,7 @@ class _Gatherer:
             self._mesh_index[key] = self._add_mesh(mesh, materials)
         index = self._mesh_index[key]
         if index is not None:
+            self._note_compositing(obj.original)
             hidden = self._hidden_from(obj, instance)
             if len(hidden) < len(VISIBILITY):
                 self.instances.append(InstanceData(obj.name, index, self._matrix(instance), hidden))
@@ -162,12 +163,14 @@ class _Gatherer:
             hidden = {kind for kind in VISIBILITY if not getattr(original, f"visible_{kind}")}
             if original.indirect_only_get(view_layer=self.view_layer):
                 hidden.add("camera")
-            if original.is_holdout or original.holdout_get(view_layer=self.view_layer):
-                self.context.note(f"object '{original.name}': holdouts are not supported; it is rendered as any other object")
-            if original.is_shadow_catcher:
-                self.context.note(f"object '{original.name}': shadow catchers are not supported; it is rendered as any other object")
             self._hidden[key] = frozenset(hidden)
         return self._hidden[key]
+
+    def _note_compositing(self, original: Any) -> None:
+        holdout = original.is_holdout or original.holdout_get(view_layer=self.view_layer)
+        for flag, what in ((holdout, "holdouts"), (original.is_shadow_catcher, "shadow catchers")):
+            if flag:
+                self.context.note(f"object '{original.name}': {what} are not supported; it is rendered as any other object")
 
     def _note_hair(self, obj: Any) -> None:
         for system in obj.particle_systems:

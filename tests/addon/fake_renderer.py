@@ -1,0 +1,163 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Stands in for the command `wardmis` in the add-on's tests: follows docs/command.md, renders nothing, and fails as it is told.
+
+WARDMIS_FAKE says how (see MODES); WARDMIS_FAKE_LOG names a file that receives a JSON line of process id and arguments.
+Every pixel of pass number k (from 0) is k + x / width + 10 y / height, x and y of the full frame, so that a test can tell what went where.
+"""
+
+import argparse
+import array
+import json
+import os
+import signal
+import struct
+import sys
+import threading
+import time
+from pathlib import Path
+
+MODES = {
+    "good": "renders",
+    "slow": "renders for ten seconds",
+    "crash": "dies of a segmentation fault after the first preview",
+    "hang": "says nothing more after its start, and ignores SIGTERM",
+    "exit3": "fails with a message",
+    "silent": "fails without a message",
+    "garbage": "prints no JSON, and makes no image",
+    "nothing": "says that it is done, and makes no image",
+    "wrong-size": "makes an image of the wrong size",
+}
+PASSES = {
+    "Combined": "RGBA",
+    "Depth": "Z",
+    "Normal": "XYZ",
+    "Albedo": "RGB",
+    "Variance": "RGB",
+    "Allocation Lobe": "X",
+    "Allocation Light": "X",
+}
+
+
+def main():
+    if sys.argv[1:] == ["--version"]:
+        print("wardmis 0.0.0 (fake)")
+        return 0
+    mode = os.environ.get("WARDMIS_FAKE", "good")
+    assert mode in MODES, f"WARDMIS_FAKE is {mode}; it can be {', '.join(MODES)}"
+    options = parse()
+    if "WARDMIS_FAKE_LOG" in os.environ:
+        with open(os.environ["WARDMIS_FAKE_LOG"], "a") as log:
+            log.write(json.dumps({"pid": os.getpid(), "arguments": sys.argv[1:]}) + "\n")
+    if options.watch_stdin:
+        threading.Thread(target=stop_when_input_ends, daemon=True).start()
+    scene = read_scene(options.scene)
+    if mode == "exit3":
+        say(event="error", code=3, message="bufferViews[0]: lies beyond the file; export the scene again")
+        print("wardmis: error: bufferViews[0]: lies beyond the file; export the scene again", file=sys.stderr)
+        return 3
+    if mode == "silent":
+        return 4
+    if mode == "garbage":
+        sys.stdout.buffer.write(b"\xff\xfe garbage\n[1, 2]\n" * 1000)
+        return 0
+    render(options, scene["extensions"]["WARDMIS_scene"]["film"], mode)
+    return 0
+
+
+def parse():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("verb", choices=["render"])
+    parser.add_argument("scene")
+    parser.add_argument("-o", dest="output", required=True)
+    parser.add_argument("--preview")
+    parser.add_argument("--layer", default="ViewLayer")
+    parser.add_argument("--spp", type=int, default=64)
+    parser.add_argument("--watch-stdin", action="store_true")
+    options = "allocation weights integrand integrator time samples-per-hit pilot-spp min-fraction max-depth sampler seed threads progress"
+    for option in options.split():
+        parser.add_argument("--" + option)
+    return parser.parse_args()
+
+
+def stop_when_input_ends():
+    while os.read(0, 1024):  # not sys.stdin, whose lock would disturb the end of this program
+        pass
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def read_scene(path):
+    data = Path(path).read_bytes()
+    magic, version, size, length, kind = struct.unpack_from("<4sIIII", data)
+    assert (magic, version, size, kind) == (b"glTF", 2, len(data), 0x4E4F534A)
+    return json.loads(data[20 : 20 + length])
+
+
+def say(**event):
+    print(json.dumps(event), flush=True)
+
+
+def render(options, film, mode):
+    x0, y0, x1, y1 = film["border"]
+    width, height = x1 - x0, y1 - y0
+    passes = [{"name": name, "channels": channels} for name, channels in PASSES.items()]
+    say(event="start", version="0.0.0", width=width, height=height, spp=options.spp, passes=passes, left_out=[], notes=[])
+    if mode == "hang":
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)
+        time.sleep(600)
+    steps = 100 if mode == "slow" else 2
+    for step in range(1, steps + 1):
+        time.sleep(0.1 if mode == "slow" else 0.01)
+        say(event="progress", phase="render", samples=step, of=steps, fraction=step / steps, seconds=0.1 * step, left=0.1 * (steps - step))
+        if options.preview and step == 1:
+            write_exr(options.preview, options.layer, {"Combined": "RGBA"}, film)
+            say(event="preview", path=options.preview, samples=step)
+    if mode == "crash":
+        os.kill(os.getpid(), signal.SIGSEGV)
+    say(event="warning", message="this renderer is a fake")
+    if mode == "wrong-size":
+        film = {**film, "border": [x0, y0, x1 + 1, y1 + 1]}
+    if mode != "nothing":
+        write_exr(options.output, options.layer, PASSES, film)
+    say(event="done", path=options.output, seconds=0.1, samples=options.spp, stats={})
+
+
+def write_exr(path, layer, passes, film):
+    """An uncompressed scan-line OpenEXR of 32-bit floats, by a temporary name and a rename."""
+    x0, y0, x1, y1 = film["border"]
+    full_width, full_height = film["resolution"]
+    width, height = x1 - x0, y1 - y0
+    channels = sorted(
+        (f"{layer}.{name}.{channel}".encode(), k) for k, (name, letters) in enumerate(passes.items()) for channel in letters
+    )
+    channel_list = b"".join(name + struct.pack("<xiB3xii", 2, 0, 1, 1) for name, _ in channels) + b"\0"
+    window = struct.pack("<4i", 0, 0, width - 1, height - 1)
+    attributes = (
+        ("channels", "chlist", channel_list),
+        ("compression", "compression", b"\0"),
+        ("dataWindow", "box2i", window),
+        ("displayWindow", "box2i", window),
+        ("lineOrder", "lineOrder", b"\0"),
+        ("pixelAspectRatio", "float", struct.pack("<f", 1)),
+        ("screenWindowCenter", "v2f", struct.pack("<2f", 0, 0)),
+        ("screenWindowWidth", "float", struct.pack("<f", 1)),
+    )
+    header = struct.pack("<II", 20000630, 2)
+    for name, kind, value in attributes:
+        header += name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
+    header += b"\0"
+    line_bytes = 8 + 4 * width * len(channels)
+    start = len(header) + 8 * height
+    with open(f"{path}.tmp", "wb") as file:
+        file.write(header)
+        file.write(struct.pack(f"<{height}Q", *(start + line_bytes * i for i in range(height))))
+        for line in range(height):
+            y = y1 - 1 - line  # files count from the top, borders from the bottom
+            file.write(struct.pack("<ii", line, line_bytes - 8))
+            for _, k in channels:
+                file.write(array.array("f", [k + x / full_width + 10 * y / full_height for x in range(x0, x1)]).tobytes())
+    os.rename(f"{path}.tmp", path)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,267 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Renders in background by a renderer that is told how to behave: what arrives, and that every failure is told."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from pathlib import Path
+
+import bpy
+from support import HERE, RenderTest, blender, read_exr
+
+MULTILAYER = """
+image = scene.render.image_settings
+if hasattr(image, "media_type"):
+    image.media_type = "MULTI_LAYER_IMAGE"
+    image.use_exr_interleave = True
+image.file_format = "OPEN_EXR_MULTILAYER"
+image.color_depth = "32"
+image.exr_codec = "NONE"
+scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 40, 20, 100
+"""
+
+
+def value(pass_number: int, x: int, y: int) -> float:
+    """What the fake renderer paints at (x, y), counted from the bottom left of a frame of 40 x 20."""
+    return pass_number + x / 40 + 10 * y / 20
+
+
+class Passes(RenderTest):
+    def test_all_passes_arrive_where_they_belong(self):
+        run = self.run_blender(MULTILAYER)
+        self.assertEqual(run.code, 0, run.output)
+        image = read_exr(run.images[0])
+        first_channels = ("Combined.R", "Depth.Z", "Normal.X", "Albedo.R", "Variance.R", "Allocation Lobe.X", "Allocation Light.X")
+        for k, channel in enumerate(first_channels):
+            pixels = image[f"ViewLayer.{channel}"]
+            self.assertEqual(pixels.shape, (20, 40))
+            for x, y in ((0, 0), (39, 0), (7, 13)):
+                self.assertAlmostEqual(float(pixels[19 - y, x]), value(k, x, y), 5, channel)
+        self.assertFalse(image["ViewLayer.Allocation Cosine.X"].any(), "a technique that the scene does not have got samples")
+
+    def test_passes_that_blender_adds_are_not_doubled(self):
+        run = self.run_blender(MULTILAYER + "layer = bpy.context.view_layer\nlayer.use_pass_z = layer.use_pass_normal = True\n")
+        self.assertEqual(run.code, 0, run.output)
+        image = read_exr(run.images[0])
+        self.assertAlmostEqual(float(image["ViewLayer.Depth.Z"][19, 3]), value(1, 3, 0), 5)
+        self.assertEqual(sum("Depth" in name for name in image), 1)
+
+    def test_compositor_has_a_socket_for_each_pass(self):
+        from wardmis.passes import PASSES
+
+        scene = bpy.data.scenes.new("Compositor")
+        scene.render.engine = "WARDMIS"
+        if hasattr(scene, "node_tree"):
+            scene.use_nodes = True
+            tree = scene.node_tree
+        else:
+            tree = scene.compositing_node_group = bpy.data.node_groups.new("Compositor", "CompositorNodeTree")
+        node = tree.nodes.new("CompositorNodeRLayers")
+        node.scene = scene
+        sockets = {socket.name for socket in node.outputs if socket.enabled}
+        # the socket of the pass Combined has been called Image since ever
+        self.assertLessEqual({name for name, _, _ in PASSES} - {"Combined"}, sockets)
+        bpy.data.scenes.remove(scene)
+
+    def test_every_view_layer_is_rendered(self):
+        run = self.run_blender(MULTILAYER + "scene.view_layers.new('Second')\nscene.view_layers.new('Off').use = False\n")
+        self.assertEqual(run.code, 0, run.output)
+        self.assertEqual([call["arguments"][call["arguments"].index("--layer") + 1] for call in run.calls], ["ViewLayer", "Second"])
+        image = read_exr(run.images[0])
+        for layer in ("ViewLayer", "Second"):
+            self.assertAlmostEqual(float(image[f"{layer}.Variance.R"][19, 3]), value(4, 3, 0), 5, layer)
+
+    def test_render_border(self):
+        border = """
+scene.render.use_border = True
+scene.render.border_min_x, scene.render.border_max_x = 0.3, 0.7
+scene.render.border_min_y, scene.render.border_max_y = 0.1, 0.6
+"""
+        whole = read_exr(self.run_blender(MULTILAYER + border).images[0])["ViewLayer.Combined.R"]
+        self.assertEqual(whole.shape, (20, 40))
+        self.assertAlmostEqual(float(whole[19 - 2, 12]), value(0, 12, 2), 5)
+        self.assertAlmostEqual(float(whole[19 - 11, 27]), value(0, 27, 11), 5)
+        self.assertEqual(float(whole[19 - 1, 12]), 0)
+        self.assertEqual(float(whole[19 - 2, 28]), 0)
+        cropped = self.run_blender(MULTILAYER + border + "scene.render.use_crop_to_border = True\n")
+        pixels = read_exr(cropped.images[0])["ViewLayer.Combined.R"]
+        self.assertEqual(pixels.shape, (10, 16))
+        self.assertAlmostEqual(float(pixels[9, 0]), value(0, 12, 2), 5)
+
+
+class Arguments(RenderTest):
+    def test_settings_reach_the_command(self):
+        run = self.run_blender(
+            "s = scene.wardmis\n"
+            "s.allocation, s.weights, s.integrand, s.integrator = 'variance', 'power', 'joint', 'direct'\n"
+            "s.samples, s.samples_per_hit, s.pilot_samples, s.min_fraction = 7, 5, 2, 0.05\n"
+            "s.max_depth, s.sampler, s.seed, s.threads = 3, 'independent', 11, 2\n"
+        )
+        arguments = run.calls[0]["arguments"]
+        expected = "--allocation variance --weights power --integrand joint --integrator direct --spp 7 --samples-per-hit 5 "
+        expected += "--pilot-spp 2 --min-fraction 0.05 --max-depth 3 --sampler independent --seed 11 --threads 2"
+        words = expected.split()
+        for option, setting in zip(words[::2], words[1::2]):
+            self.assertEqual(arguments[arguments.index(option) + 1], setting, option)
+        self.assertNotIn("--time", arguments)
+
+    def test_stop_by_seconds_and_blenders_threads(self):
+        run = self.run_blender("s = scene.wardmis\ns.stop_by, s.seconds = 'seconds', 2.5\nscene.render.threads_mode = 'FIXED'\nscene.render.threads = 3\n")
+        arguments = run.calls[0]["arguments"]
+        self.assertEqual(arguments[arguments.index("--time") + 1], "2.5")
+        self.assertEqual(arguments[arguments.index("--threads") + 1], "3")
+        self.assertNotIn("--spp", arguments)
+
+
+class Animation(RenderTest):
+    def test_animation_leaves_nothing_behind(self):
+        run = self.run_blender("scene.frame_end = 3\n", "--render-anim")
+        self.assertEqual(run.code, 0, run.output)
+        self.assertEqual([p.name for p in run.images], ["image_0001.png", "image_0002.png", "image_0003.png"])
+        self.assertEqual(len(run.calls), 3)
+        self.assertEqual(run.left_over, [])
+
+    def test_animation_ends_with_its_first_failure(self):
+        run = self.run_blender("scene.frame_end = 3\n", "--render-anim", fake="exit3")
+        self.assertEqual((run.code, len(run.calls), run.images), (1, 1, []), run.output)
+
+
+class Failures(RenderTest):
+    """Exit code 1, the message, no image, no file and no process left, whatever the format of the output."""
+
+    def check(self, message: str, script: str = "", *arguments: str, **options: str) -> None:
+        run = self.run_blender(script, *arguments, **options)
+        self.assertIn(message, run.output)
+        self.assertEqual(run.code, 1, run.output)
+        self.assertEqual(run.images, [])
+        self.assertEqual(run.left_over, [])
+        for call in run.calls:
+            self.assertFalse(Path(f"/proc/{call['pid']}").exists(), "the renderer is still there")
+
+    def test_crash(self):
+        self.check("WardMIS: the renderer crashed (SIGSEGV)", fake="crash")
+
+    def test_crash_with_exr_output(self):
+        self.check("WardMIS: the renderer crashed (SIGSEGV)", "scene.render.image_settings.file_format = 'OPEN_EXR'\n", fake="crash")
+
+    def test_message_of_the_renderer(self):
+        self.check("exit code 3): bufferViews[0]: lies beyond the file", fake="exit3")
+
+    def test_failure_without_a_message(self):
+        self.check("exit code 4) without a message", fake="silent")
+
+    def test_garbage_instead_of_events(self):
+        self.check("ended without an image; it said: ", fake="garbage")
+
+    def test_no_image(self):
+        self.check("ended without an image", MULTILAYER, fake="nothing")
+
+    def test_image_of_the_wrong_size(self):
+        self.check("Blender cannot read the image of the renderer", MULTILAYER, fake="wrong-size")
+
+    def test_renderer_not_found(self):
+        self.check("which the environment variable WARDMIS_BINARY names", WARDMIS_BINARY=str(self.folder / "none"))
+
+    def test_renderer_nowhere(self):
+        # Blender needs no PATH of its own here
+        self.check("none is on the PATH", WARDMIS_BINARY="", PATH="/nowhere")
+
+    def test_renderer_that_is_no_program(self):
+        bad = self.folder / "bad"
+        bad.write_bytes(b"\x7fELF nothing")
+        bad.chmod(0o755)
+        self.check("cannot be run: Exec format error", WARDMIS_BINARY=str(bad))
+
+    def test_renderer_that_may_not_be_run(self):
+        bad = self.folder / "bad"
+        bad.write_text("#!/bin/sh\n")
+        bad.chmod(0o644)
+        self.check("cannot be run: Permission denied", WARDMIS_BINARY=str(bad))
+
+    def test_no_camera(self):
+        self.check("no camera", "bpy.data.objects.remove(scene.camera)\n")
+
+    def test_panoramic_camera(self):
+        self.check("camera 'Camera' is panoramic", "scene.camera.data.type = 'PANO'\n")
+
+    def test_stereoscopy(self):
+        self.check("stereoscopy is not supported", "scene.render.use_multiview = True\n")
+
+    def test_mesh_that_is_not_finite(self):
+        self.check(
+            "object 'Cube': vertex 3 of mesh 'Cube' is at (nan,", "bpy.data.meshes['Cube'].vertices[3].co.x = float('nan')\n"
+        )
+
+    def test_mistake_of_the_addon(self):
+        self.check(
+            "an error in the add-on, please report it with the console's text: ZeroDivisionError",
+            "import wardmis.engine\nwardmis.engine.renderer_path = lambda: 1 / 0\nscene.render.image_settings.file_format = 'OPEN_EXR'\n",
+        )
+
+    def test_output_that_cannot_be_written(self):
+        (self.folder / "taken").write_text("")
+        self.check("taken", "", "--render-output", str(self.folder / "taken" / "image"), "--render-frame", "1")
+
+
+class Stopping(RenderTest):
+    def start(self, fake: str):
+        process = blender(self.folder, "", "--render-frame", "1", fake=fake)
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        log = self.folder / "calls.log"
+        deadline = time.monotonic() + 60
+        while not log.exists() or not log.read_text().endswith("\n"):
+            self.assertLess(time.monotonic(), deadline, "the renderer never started")
+            time.sleep(0.05)
+        import json
+
+        return process, json.loads(log.read_text())["pid"]
+
+    def wait_for_end(self, pid: int, seconds: float) -> None:
+        deadline = time.monotonic() + seconds
+        while Path(f"/proc/{pid}").exists():
+            self.assertLess(time.monotonic(), deadline, "the renderer is still there")
+            time.sleep(0.02)
+
+    def test_interrupt_stops_a_renderer_that_hangs(self):
+        process, renderer = self.start("hang")
+        process.send_signal(signal.SIGINT)
+        self.wait_for_end(renderer, 5)
+        process.communicate(timeout=10)
+        self.assertEqual(list(self.folder.glob("image*")), [])
+        self.assertEqual(list((self.folder / "tmp").rglob("wardmis-*")), [])
+
+    def test_renderer_ends_when_blender_is_killed(self):
+        process, renderer = self.start("slow")
+        process.kill()
+        self.wait_for_end(renderer, 2)
+
+
+class Finding(RenderTest):
+    def test_order_of_the_places(self):
+        import shutil
+        from unittest import mock
+
+        from wardmis import process
+
+        one, two, three = (self.folder / name for name in ("one", "two", "wardmis"))
+        for path in (one, two, three):
+            shutil.copy(HERE / "fake_renderer.py", path)
+        with mock.patch.dict(os.environ, {"WARDMIS_BINARY": str(two), "PATH": str(self.folder)}):
+            self.assertEqual(process.find_renderer(str(one)), one)
+            self.assertEqual(process.find_renderer(""), two)
+            with mock.patch.object(process, "PACKAGED", three):
+                three.chmod(0o644)  # as Blender unpacks it
+                self.assertEqual(process.find_renderer(""), three)
+                self.assertTrue(os.access(three, os.X_OK))
+            del os.environ["WARDMIS_BINARY"]
+            self.assertEqual(process.find_renderer(""), three)
+
+    def test_version_of_a_renderer(self):
+        from wardmis import process
+
+        self.assertEqual(process.version(HERE / "fake_renderer.py"), "wardmis 0.0.0 (fake)")
+        with self.assertRaisesRegex(process.RendererError, "is not the WardMIS renderer"):
+            process.version(Path("/bin/true"))
