@@ -28,14 +28,13 @@ class RendererError(Exception):
 
 def find_renderer(chosen: str) -> Path:
     """The renderer's path: `chosen` (the preferences), else the packaged one, else $WARDMIS_BINARY, else on the PATH."""
-    for place, value in (("the add-on's preferences", chosen), (f"the environment variable {VARIABLE}", _variable(chosen))):
-        if value:
-            if not Path(value).is_file():
-                raise RendererError(f"there is no renderer at {value}, which {place} name; correct the path or clear it")
-            return Path(value)
+    if chosen:
+        return _existing(chosen, "the add-on's preferences name")
     if PACKAGED.is_file():
         _make_executable(PACKAGED)
         return PACKAGED
+    if os.environ.get(VARIABLE):
+        return _existing(os.environ[VARIABLE], f"the environment variable {VARIABLE} names")
     on_path = shutil.which(BINARY)
     if on_path is None:
         raise RendererError(
@@ -46,8 +45,10 @@ def find_renderer(chosen: str) -> Path:
     return Path(on_path)
 
 
-def _variable(chosen: str) -> str:
-    return "" if chosen or PACKAGED.is_file() else os.environ.get(VARIABLE, "")
+def _existing(path: str, named_by: str) -> Path:
+    if not Path(path).is_file():
+        raise RendererError(f"there is no renderer at {path}, which {named_by}; correct the path or clear it")
+    return Path(path)
 
 
 def _make_executable(path: Path) -> None:
