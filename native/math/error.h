@@ -21,8 +21,8 @@ enum class ExitCode : int {
 // what(): what was found, where (file, node, object), what was expected; hint: what to do.
 class Error : public std::runtime_error {
  public:
-  Error(ExitCode code, const std::string& what, std::string hint = {})
-      : std::runtime_error(what), code(code), hint(std::move(hint)) {}
+  Error(ExitCode exitCode, const std::string& what, std::string whatToDo = {})
+      : std::runtime_error(what), code(exitCode), hint(std::move(whatToDo)) {}
   ExitCode code;
   std::string hint;
 };

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "bsdf/ward.h"
+#include "film/filter.h"
 #include "math/vec.h"
 
 namespace wardmis {
@@ -62,7 +64,6 @@ struct ScalarInput {
   TextureUse texture;
 };
 
-enum class WardVariant : uint8_t { kWard, kWardDur, kWardGmd };  // 1992, 2006, 2010
 
 struct Material {
   std::string name;
@@ -137,7 +138,6 @@ struct Camera {
   float bladeRotation = 0, bladeRatio = 1;
 };
 
-enum class FilterType : uint8_t { kBox, kGaussian, kBlackmanHarris };
 
 struct Film {
   int width = 960, height = 540;                 // full frame

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The reflecting surface at one hit: diffuse + Ward, with its inputs resolved to numbers.
+//   f(wi, wo) = diffuse/pi + specular * ward(wi, wo)
+#pragma once
+
+#include "bsdf/ward.h"
+
+namespace wardmis {
+
+struct Surface {
+  Rgb diffuse{0, 0, 0}, specular{0, 0, 0};  // albedo factors rho_d, rho_s
+  float ax = 0.1f, ay = 0.1f;
+  WardVariant variant = WardVariant::kWardGmd;
+
+  bool hasDiffuse() const { return maxComponent(diffuse) > 0; }
+  bool hasSpecular() const { return maxComponent(specular) > 0; }
+  // Below this alpha the rounding of float directions shows in E, and the lobe is evaluated in double (docs/theory.md).
+  bool needsDouble() const { return std::min(ax, ay) < 2e-3f; }
+};
+
+// Directions of the samples at one hit, and what the surface says of them: structure of arrays, so that evaluation
+// is one vectorised loop. Local frame; densities per solid angle.
+template <class T, int Capacity>
+struct Batch {
+  T x[Capacity], y[Capacity], z[Capacity];  // wi
+  T specular[Capacity];                     // f_s cos for rho_s = 1
+  T diffuse[Capacity];                      // cos/pi: f_d cos for rho_d = 1, and the cosine technique's pdf
+  T lobe[Capacity];                         // the lobe technique's pdf
+
+  Vec3<T> wi(int j) const { return {x[j], y[j], z[j]}; }
+  void set(int j, Vec3<T> wi) { x[j] = wi.x, y[j] = wi.y, z[j] = wi.z; }
+};
+
+template <WardVariant V, class T, int Capacity>
+inline void evaluateWard(Batch<T, Capacity>& b, int n, Vec3<T> wo, T invAx, T invAy) {
+  for (int j = 0; j < n; ++j) {
+    const WardValue<T> w = wardEvaluate<V>({b.x[j], b.y[j], b.z[j]}, wo, invAx, invAy);
+    b.specular[j] = w.fCos;
+    b.lobe[j] = w.pdf;
+  }
+}
+
+// Fills specular, diffuse and lobe of the first n directions.
+template <bool HasSpecular, class T, int Capacity>
+inline void evaluate(const Surface& s, Vec3<T> wo, Batch<T, Capacity>& b, int n) {
+  for (int j = 0; j < n; ++j) b.diffuse[j] = (b.z[j] > T(0) ? b.z[j] : T(0)) * (T(1) / kPi<T>);
+  if constexpr (HasSpecular) {
+    const T invAx = T(1) / T(s.ax), invAy = T(1) / T(s.ay);
+    switch (s.variant) {
+      case WardVariant::kWard: return evaluateWard<WardVariant::kWard>(b, n, wo, invAx, invAy);
+      case WardVariant::kWardDur: return evaluateWard<WardVariant::kWardDur>(b, n, wo, invAx, invAy);
+      case WardVariant::kWardGmd: return evaluateWard<WardVariant::kWardGmd>(b, n, wo, invAx, invAy);
+    }
+  }
+}
+
+}  // namespace wardmis

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Multi-layer OpenEXR files: written complete or not at all.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace wardmis {
+
+struct ExrChannel {
+  std::string name;           // "<layer>.<pass>.<channel>"
+  std::vector<float> values;  // width * height, row 0 is the top row
+};
+
+struct ExrImage {
+  int width = 0, height = 0;
+  std::vector<ExrChannel> channels;
+  std::vector<std::pair<std::string, std::string>> attributes;
+};
+
+// Writes under a temporary name beside `path`, then renames. compress: lossless ZIP, else none.
+// Throws Error(kFile); then no file of either name is left.
+void writeExr(const std::filesystem::path& path, const ExrImage& image, bool compress);
+
+}  // namespace wardmis

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is accumulated per pixel. Each pixel is written by one thread at a time and in the order of its samples, so that
+// the image does not depend on the number of threads.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "math/vec.h"
+
+namespace wardmis {
+
+struct Pixel {
+  std::array<double, 3> sum{}, squares{};  // of the samples' radiance
+  float alpha = 0;
+  float depth = 1e10f;  // planar, of the first sample
+  Vec3f normal{0, 0, 0};
+  Rgb albedo{0, 0, 0};
+  std::array<float, 3> techniques{};  // samples that each technique took at first hits
+
+  void add(Rgb v) {
+    const float c[3] = {v.x, v.y, v.z};
+    for (size_t i = 0; i < 3; ++i) {
+      sum[i] += double(c[i]);
+      squares[i] += double(c[i]) * double(c[i]);
+    }
+  }
+};
+
+struct FilmBuffer {
+  int width = 0, height = 0;  // of the border; row 0 is the bottom row
+  std::vector<Pixel> pixels;
+  uint32_t samples = 0;  // camera samples that every pixel has
+
+  FilmBuffer() = default;
+  FilmBuffer(int w, int h) : width(w), height(h), pixels(static_cast<size_t>(w) * static_cast<size_t>(h)) {}
+  Pixel& at(int x, int y) { return pixels[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)]; }
+  const Pixel& at(int x, int y) const { return pixels[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)]; }
+
+  Rgb mean(const Pixel& p) const {
+    const double s = samples > 0 ? 1.0 / samples : 0;
+    return {static_cast<float>(p.sum[0] * s), static_cast<float>(p.sum[1] * s), static_cast<float>(p.sum[2] * s)};
+  }
+  // Variance of the mean, from the samples as if they were independent; 0 with fewer than two samples.
+  Rgb variance(const Pixel& p) const {
+    if (samples < 2) return {0, 0, 0};
+    const double n = samples;
+    const auto one = [&](size_t i) {
+      const double mean = p.sum[i] / n;
+      return static_cast<float>(std::max(0.0, p.squares[i] / n - mean * mean) / (n - 1));
+    };
+    return {one(0), one(1), one(2)};
+  }
+};
+
+}  // namespace wardmis

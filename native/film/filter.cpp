@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "film/filter.h"
+
+#include <cmath>
+
+#include "math/number.h"
+
+namespace wardmis {
+
+PixelFilter::PixelFilter(FilterType type, float width) {
+  if (type == FilterType::kBox) {
+    inverse_ = {-0.5f, 0.5f};
+    return;
+  }
+  const double w = width;
+  const double radius = type == FilterType::kGaussian ? 1.5 * w : w;
+  const auto density = [&](double v) {
+    if (type == FilterType::kGaussian) return std::exp(-8 * v * v / (w * w));
+    const double q = 2 * kPi<double> * (v / (2 * w) + 0.5);
+    return std::max(0.0, 0.35875 - 0.48829 * std::cos(q) + 0.14128 * std::cos(2 * q) - 0.01168 * std::cos(3 * q));
+  };
+  // cumulated by the trapezoidal rule on a fine grid, then inverted at equal steps of probability
+  constexpr size_t kGrid = 1 << 14, kQuantiles = 1 << 10;
+  std::vector<double> cumulated(kGrid + 1, 0);
+  const double step = 2 * radius / kGrid;
+  for (size_t i = 0; i < kGrid; ++i) {
+    const double v = -radius + step * static_cast<double>(i);
+    cumulated[i + 1] = cumulated[i] + 0.5 * (density(v) + density(v + step)) * step;
+  }
+  inverse_.resize(kQuantiles + 1);
+  size_t i = 0;
+  for (size_t k = 0; k <= kQuantiles; ++k) {
+    const double target = cumulated[kGrid] * static_cast<double>(k) / kQuantiles;
+    while (i + 1 < kGrid && cumulated[i + 1] < target) ++i;
+    const double span = cumulated[i + 1] - cumulated[i];
+    const double f = span > 0 ? (target - cumulated[i]) / span : 0;
+    inverse_[k] = static_cast<float>(-radius + step * (static_cast<double>(i) + std::clamp(f, 0.0, 1.0)));
+  }
+}
+
+}  // namespace wardmis

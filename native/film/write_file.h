@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A file appears complete or not at all.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace wardmis {
+
+// Writes under a temporary name beside `path`, then renames. Throws Error(kFile); then no file of either name is left.
+void writeFile(const std::filesystem::path& path, std::string_view bytes);
+
+}  // namespace wardmis

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The estimator at one hit: the samples of every technique as one batch, evaluated together, then traced.
+#pragma once
+
+#include <cstddef>
+#include <new>
+
+#include "integrate/interaction.h"
+#include "math/check.h"
+#include "math/random.h"
+#include "math/warp.h"
+#include "mis/allocation.h"
+
+namespace wardmis {
+
+inline constexpr int kMaxSamplesPerHit = 256;
+
+// What a render counts.
+struct Counts {
+  std::array<uint64_t, kTechniques> samples{};  // at the first hit
+  uint64_t cameraRays = 0, lobeRays = 0, cosineRays = 0, shadowRays = 0;
+  RareCounts rare;
+
+  Counts& operator+=(const Counts& b) {
+    for (int i = 0; i < kTechniques; ++i) samples[i] += b.samples[i];
+    cameraRays += b.cameraRays, lobeRays += b.lobeRays, cosineRays += b.cosineRays, shadowRays += b.shadowRays;
+    rare += b.rare;
+    return *this;
+  }
+};
+
+// The built scene, read-only, shared by all threads.
+struct RenderScene {
+  const Scene& scene;
+  const Geometry& geometry;
+  const Accel& accel;
+  const Emitters& emitters;
+};
+
+// A local array whose elements are made when they are first assigned: most hits use few of them.
+template <class E, int Capacity>
+class Scratch {
+ public:
+  E& operator[](int i) { return *std::launder(reinterpret_cast<E*>(storage_ + static_cast<size_t>(i) * sizeof(E))); }
+  void set(int i, const E& e) { new (storage_ + static_cast<size_t>(i) * sizeof(E)) E(e); }
+
+ private:
+  alignas(E) std::byte storage_[sizeof(E) * static_cast<size_t>(Capacity)];
+};
+
+// Names of the random numbers that a vertex uses; the number's dimension is vertex * kPerVertex + name.
+enum Dimension : uint32_t { kFilmPoint = 0, kLensPoint, kSampleCounts, kLobePoint, kCosinePoint, kLightPoint, kRoulette, kPerVertex };
+
+// How a hit is to be sampled.
+struct HitPlan {
+  Fractions fractions{};  // of the techniques that this hit has
+  int samples = 0;        // in all; at most the batch's capacity
+  Integrand integrand = Integrand::kSplit;
+  WeightRule weights = WeightRule::kBalance;
+  uint32_t pixelKey = 0, vertex = 0;
+  uint32_t index = 0;  // of this visit, among the pixel's
+};
+
+// A ray of a surface technique that hit something: the path may go on from there.
+struct Continuation {
+  Ray ray;
+  Hit hit;
+  Rgb weight{0, 0, 0};  // f cos / pdf with MIS weights and counts, for light that no light sample covers
+};
+
+struct Continuations {
+  Scratch<Continuation, kMaxSamplesPerHit> list;
+  int count = 0;
+};
+
+// Moments of the two integrands (joint: of the first alone).
+struct HitMoments {
+  Moments specular, diffuse;
+};
+
+// Estimates the direct light at x, in double where T is (sharp lobes). Continuations are kept only if N needs bounces.
+template <uint32_t N, class T>
+Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interaction& x, const HitPlan& plan, Counts& counts,
+                HitMoments* moments, Continuations& continuations) {
+  constexpr bool kSpec = (N & kNeedsSpecular) != 0, kDiff = (N & kNeedsDiffuse) != 0, kPath = (N & kNeedsBounces) != 0;
+  const Surface& s = x.surface;
+  const bool specular = kSpec && s.hasSpecular(), diffuse = kDiff && s.hasDiffuse();
+  const bool split = plan.integrand == Integrand::kSplit;
+  const Mixture mixture(plan.fractions, plan.samples, plan.weights);
+  const uint32_t dimension = plan.vertex * kPerVertex;
+  const std::array<int, kTechniques> n =
+      systematicCounts(plan.fractions, plan.samples, sampler.get1D(plan.pixelKey, dimension + kSampleCounts, plan.index));
+  const Vec3f woFloat = x.frame.toLocal(x.wo);
+  const Vec3<T> wo{T(woFloat.x), T(woFloat.y), T(woFloat.z)};
+
+  // Draw the directions of all techniques.
+  Batch<T, kMaxSamplesPerHit> batch;
+  Scratch<LightSample, kMaxSamplesPerHit> light;
+  const auto point = [&](Technique t, int m) {
+    const auto most = static_cast<uint32_t>(std::ceil(mixture.n[t]));  // points set aside for one visit
+    return sampler.get2D(plan.pixelKey, dimension + kLobePoint + t, plan.index * most + static_cast<uint32_t>(m));
+  };
+  int j = 0;
+  if constexpr (kSpec)
+    for (int m = 0; m < n[kLobe]; ++m) {
+      const Vec2f u = point(kLobe, m);
+      batch.set(j++, wardSample<T>(wo, T(s.ax), T(s.ay), {T(u.x), T(u.y)}));
+    }
+  const int endLobe = j;
+  if constexpr (kDiff)
+    for (int m = 0; m < n[kCosine]; ++m) {
+      const Vec2f u = point(kCosine, m);
+      batch.set(j++, toCosineHemisphere<T>({T(u.x), T(u.y)}));
+    }
+  const int endCosine = j;
+  for (int m = 0; m < n[kLight]; ++m, ++j) {
+    light.set(j, world.emitters.sample(x.position, point(kLight, m)));
+    const Vec3f wi = x.frame.toLocal(light[j].direction);
+    batch.set(j, {T(wi.x), T(wi.y), T(wi.z)});
+  }
+  evaluate<kSpec>(s, wo, batch, j);
+
+  // One sample's share of an emitter's light, by MIS over the techniques of each integral.
+  Rgb sum{0, 0, 0};
+  const auto add = [&](Technique t, Rgb fs, Rgb fd, Rgb radiance, const Fractions& p, uint8_t visibility) {
+    if ((visibility & kSeenByGlossy) == 0) fs = {0, 0, 0};
+    if ((visibility & kSeenByDiffuse) == 0) fd = {0, 0, 0};
+    if (!split) {
+      const Rgb f = (fs + fd) * radiance;
+      sum += f * mixture.scale(t, p, kAllTechniques);
+      if (moments != nullptr) moments->specular.add(luminance(f), p, mixture.n, kAllTechniques);
+      return;
+    }
+    if (specular && t != kCosine) {
+      const Rgb f = fs * radiance;
+      sum += f * mixture.scale(t, p, kSpecularTechniques);
+      if (moments != nullptr) moments->specular.add(luminance(f), p, mixture.n, kSpecularTechniques);
+    }
+    if (diffuse && t != kLobe) {
+      const Rgb f = fd * radiance;
+      sum += f * mixture.scale(t, p, kDiffuseTechniques);
+      if (moments != nullptr) moments->diffuse.add(luminance(f), p, mixture.n, kDiffuseTechniques);
+    }
+  };
+
+  for (int k = 0; k < j; ++k) {
+    const Technique t = k < endLobe ? kLobe : k < endCosine ? kCosine : kLight;
+    ++counts.samples[t];
+    const Vec3<T> wi = batch.wi(k);
+    if (!(wi.z > T(0))) continue;  // below the surface: zero, and it counts
+    const Rgb fs = specular ? s.specular * static_cast<float>(batch.specular[k]) : Rgb{0, 0, 0};
+    const Rgb fd = diffuse ? s.diffuse * static_cast<float>(batch.diffuse[k]) : Rgb{0, 0, 0};
+    Fractions p{specular ? static_cast<float>(batch.lobe[k]) : 0.0f, diffuse ? static_cast<float>(batch.diffuse[k]) : 0.0f, 0.0f};
+
+    if (t == kLight) {
+      const LightSample& l = light[k];
+      if (!(l.pdf > 0) || !(dot(x.geometric, l.direction) > 0) || !(maxComponent(l.radiance) > 0)) continue;
+      if (!(maxComponent(fs + fd) > 0)) continue;
+      Ray shadow;
+      shadow.origin = x.leave(l.direction);
+      shadow.direction = l.direction;
+      shadow.kind = kCastsShadow;
+      if (l.distance < 1e30f) {
+        // up to just before the emitter: from the moved origin to the same point
+        const Vec3f to = x.position + l.direction * l.distance - shadow.origin;
+        const float d = length(to);
+        shadow.direction = to / d;
+        shadow.tMax = d * (1 - 1e-4f);
+      }
+      if (l.shadow) {
+        ++counts.shadowRays;
+        if (world.accel.occluded(shadow)) continue;
+      }
+      if (l.exclusive) {
+        const Rgb f = ((l.visibility & kSeenByGlossy) != 0 ? fs : Rgb{}) + ((l.visibility & kSeenByDiffuse) != 0 ? fd : Rgb{});
+        sum += f * l.radiance / (l.pdf * mixture.n[kLight]);
+      } else {
+        p[kLight] = l.pdf;
+        add(kLight, fs, fd, l.radiance, p, l.visibility);
+      }
+      continue;
+    }
+
+    // A surface technique: follow the ray to what it meets.
+    const Vec3f d = normalize(x.frame.toWorld(Vec3f{static_cast<float>(wi.x), static_cast<float>(wi.y), static_cast<float>(wi.z)}));
+    if (!(dot(x.geometric, d) > 0)) continue;
+    Ray ray;
+    ray.origin = x.leave(d);
+    ray.direction = d;
+    ray.kind = t == kLobe ? kSeenByGlossy : kSeenByDiffuse;
+    ++(t == kLobe ? counts.lobeRays : counts.cosineRays);
+    const Hit hit = world.accel.intersect(ray);
+    world.emitters.along(ray, hit.t, !hit.valid(), [&](const EmitterHit& e) {
+      p[kLight] = e.pdf;
+      add(t, fs, fd, e.radiance, p, e.visibility);
+    });
+    if (!hit.valid()) continue;
+    const Shape& shape = world.geometry.shapes[hit.shape];
+    const Material& m = world.scene.materials[static_cast<size_t>(shape.material)];
+    if (maxComponent(m.emission.value) > 0) {
+      p[kLight] = world.emitters.trianglePdf(world.geometry.placements[hit.placement], hit, d);
+      const Rgb radiance = interact<N>(world.scene, world.geometry, ray, hit).emission;
+      add(t, fs, fd, radiance, p, world.geometry.placements[hit.placement].visibility);
+    }
+    if constexpr (kPath) {
+      p[kLight] = 0;  // no light sample covers what is reflected there
+      Rgb w;
+      if (!split)
+        w = (fs + fd) * mixture.scale(t, p, kAllTechniques);
+      else
+        w = t == kLobe ? fs * mixture.scale(t, p, kSpecularTechniques) : fd * mixture.scale(t, p, kDiffuseTechniques);
+      if (maxComponent(w) > 0) continuations.list.set(continuations.count++, {ray, hit, w});
+    }
+  }
+  if (moments != nullptr) moments->specular.hits += 1, moments->diffuse.hits += 1;
+  return sum;
+}
+
+}  // namespace wardmis

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The camera samples of one tile. One instantiation per needs mask (kernels.cpp), chosen once per render.
+#pragma once
+
+#include "film/film.h"
+#include "integrate/pilot.h"
+#include "scene/camera_ray.h"
+
+namespace wardmis {
+
+struct KernelInput {
+  const RenderScene& scene;
+  const CameraRays& camera;
+  const PixelFilter& filter;
+  const Sampler& sampler;
+  const std::vector<Fractions>* perPixel;  // null: `fractions` everywhere
+  Fractions fractions;                     // of a hit, before it is restricted to what the surface has
+  AllocationRule rule;
+  Integrand integrand;
+  WeightRule weights;
+  int samplesPerHit, depth;
+  bool lights;       // the light technique has something to aim at
+  bool surfaceRays;  // rays of the surface's techniques can find light
+  int x0, y0;        // of the border in the full frame
+};
+
+struct Tile {
+  int x0, y0, x1, y1;           // within the border
+  uint32_t firstSample, samples;
+};
+
+// Adds camera samples firstSample .. +samples of the tile's pixels to the film, and, where `pilot` is given, their moments.
+using TileKernel = void (*)(const KernelInput&, const Tile&, FilmBuffer&, Pilot* pilot, Counts&);
+
+// The kernel for a mask of kKernelNeeds bits.
+TileKernel tileKernel(uint32_t needs);
+
+}  // namespace wardmis

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "integrate/pilot.h"
+
+#include <tbb/parallel_for.h>
+
+namespace wardmis {
+
+std::vector<Fractions> Pilot::fractions(AllocationRule rule, Integrand integrand, TechniqueMask available, float minimum) const {
+  constexpr int kRadius = 3;         // 7 x 7 pixels
+  constexpr float kSameFace = 0.9f;  // cos of the largest turn of the normal that still is "the same surface"
+  std::vector<Fractions> result(pixels.size());
+  tbb::parallel_for(0, height, [&](int y) {
+    for (int x = 0; x < width; ++x) {
+      const PilotPixel& center = pixels[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)];
+      HitMoments m;
+      for (int v = std::max(0, y - kRadius); v <= std::min(height - 1, y + kRadius); ++v)
+        for (int u = std::max(0, x - kRadius); u <= std::min(width - 1, x + kRadius); ++u) {
+          const PilotPixel& q = pixels[static_cast<size_t>(v) * static_cast<size_t>(width) + static_cast<size_t>(u)];
+          if (q.material != center.material || q.placement != center.placement || dot(q.normal, center.normal) < kSameFace) continue;
+          m.specular += q.moments.specular;
+          m.diffuse += q.moments.diffuse;
+        }
+      Fractions& a = result[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)];
+      if (integrand == Integrand::kJoint)
+        a = allocate(rule, m.specular, available, minimum);
+      else
+        a = combineSplit(allocate(rule, m.specular, available & kSpecularTechniques, minimum),
+                         allocate(rule, m.diffuse, available & kDiffuseTechniques, minimum));
+    }
+  });
+  return result;
+}
+
+}  // namespace wardmis

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The pilot: moments of each pixel's first hits, pooled over techniques, smoothed over neighbouring pixels of the same
+// surface, turned into each pixel's fractions. Fixed before the main samples are drawn, so these stay unbiased.
+#pragma once
+
+#include "integrate/hit.h"
+
+namespace wardmis {
+
+struct PilotPixel {
+  HitMoments moments;
+  Vec3f normal{0, 0, 0};
+  int material = -1;
+  uint32_t placement = ~0u;
+};
+
+struct Pilot {
+  int width, height;
+  std::vector<PilotPixel> pixels;
+
+  Pilot(int w, int h) : width(w), height(h), pixels(static_cast<size_t>(w) * static_cast<size_t>(h)) {}
+
+  // Fractions per pixel of the techniques that the scene has (`available`).
+  std::vector<Fractions> fractions(AllocationRule rule, Integrand integrand, TechniqueMask available, float minimum) const;
+};
+
+}  // namespace wardmis

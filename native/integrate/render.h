@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A whole render: set-up, pilot, passes over the image, statistics.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "film/film.h"
+#include "integrate/hit.h"
+#include "scene/scene.h"
+
+namespace wardmis {
+
+enum class Integrator : uint8_t { kDirect, kPath };
+std::string_view name(Integrator);
+std::string_view name(SamplerType);
+std::string_view name(FilterType);
+
+struct RenderSettings {
+  AllocationRule allocation = AllocationRule::kSecondMoment;
+  std::optional<WeightRule> weights;  // none: what the paper pairs with the allocation
+  Integrand integrand = Integrand::kSplit;
+  Integrator integrator = Integrator::kPath;
+  SamplerType sampler = SamplerType::kSobol;
+  uint32_t spp = 64;    // camera samples per pixel, the pilot's included
+  double seconds = 0;   // > 0: stop after this time instead
+  int samplesPerHit = 3;
+  uint32_t pilotSpp = 4;
+  float minFraction = 0.1f;
+  int maxDepth = 8;     // surface hits of a path
+  uint64_t seed = 0;
+  int threads = 0;      // 0: all
+  bool generalKernel = false;
+
+  WeightRule weightRule() const { return weights.value_or(paperWeights(allocation)); }
+};
+
+struct Statistics {
+  double buildSeconds = 0, pilotSeconds = 0, renderSeconds = 0;  // wall; render excludes the pilot
+  double pilotCpuSeconds = 0, renderCpuSeconds = 0;
+  Counts counts;
+  uint32_t needs = 0, kernel = 0;
+  std::vector<std::string> leftOut;
+  uint64_t triangles = 0, instances = 0, emissiveTriangles = 0;
+  int threads = 0;
+  TechniqueMask techniques = 0;  // those that the scene has
+  bool allocated = false;        // a pilot ran and counts were allocated by it
+};
+
+struct Progress {
+  bool pilot = false;
+  uint32_t samples = 0;  // complete ones of every pixel
+  uint32_t of = 0;       // 0: by time
+  double fraction = 0, seconds = 0, left = 0;
+};
+
+enum class Stop : int { kNo = 0, kKeep, kDiscard };  // stop, keeping the image so far or not
+
+// What a caller wants to hear. Called from one thread at a time, between passes or every quarter of a second.
+struct RenderObserver {
+  std::function<void(const Statistics&)> started;  // needs and what is left out are known
+  std::function<void(const Progress&)> progress;
+  std::function<void(const FilmBuffer&)> image;    // between passes: the film is at rest
+  const std::atomic<Stop>* stop = nullptr;
+};
+
+// Renders scene.film's border. The scene must have a camera. Throws Error.
+FilmBuffer render(const Scene& scene, const RenderSettings& settings, Statistics& statistics, const RenderObserver& observer = {});
+
+}  // namespace wardmis

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Definition of the tile kernel; included by kernels.cpp alone.
+#pragma once
+
+#include "integrate/kernel.h"
+#include "integrate/path.h"
+
+namespace wardmis {
+
+// Radiance along one camera ray.
+template <uint32_t N>
+Rgb cameraSample(const KernelInput& in, const Ray& ray, uint32_t pixelKey, uint32_t sample, const Fractions* pixelFractions,
+                 Pixel& pixel, PilotPixel* pilot, Counts& counts) {
+  const RenderScene& world = in.scene;
+  ++counts.cameraRays;
+  const Hit hit = world.accel.intersect(ray);
+  const bool transparent = world.scene.film.transparent;
+  Rgb sum{0, 0, 0};
+  bool covered = hit.valid() || !transparent;
+  world.emitters.along(ray, hit.valid() ? hit.t : ray.tMax, !hit.valid() && !transparent, [&](const EmitterHit& e) {
+    sum += e.radiance;
+    covered = true;
+  });
+  pixel.alpha += covered ? 1.0f : 0.0f;
+  if (!hit.valid()) return sum;
+
+  const Interaction x = interact<N>(world.scene, world.geometry, ray, hit);
+  const Surface& s = x.surface;
+  sum += x.emission;
+  if (sample == 0) pixel.depth = in.camera.depth(ray, hit.t);
+  pixel.normal += x.frame.z;
+  pixel.albedo += s.diffuse + s.specular;
+  if (pilot != nullptr && pilot->material < 0) {
+    pilot->material = x.material;
+    pilot->placement = x.placement;
+    pilot->normal = x.frame.z;
+  }
+
+  const TechniqueMask mask = techniquesAt(s, in.lights, in.surfaceRays);
+  if (mask == 0 || !(s.hasDiffuse() || s.hasSpecular())) return sum;
+  HitPlan plan;
+  plan.fractions = restrict(in.rule == AllocationRule::kAlbedo ? albedoFractions(s) : pixelFractions != nullptr ? *pixelFractions : in.fractions, mask);
+  plan.samples = in.samplesPerHit;
+  plan.integrand = in.integrand;
+  plan.weights = in.weights;
+  plan.pixelKey = pixelKey;
+  plan.index = sample;
+  Continuations more;
+  const std::array<uint64_t, kTechniques> before = counts.samples;
+  sum += estimate<N>(world, in.sampler, x, plan, counts, pilot != nullptr ? &pilot->moments : nullptr, more);
+  for (size_t i = 0; i < kTechniques; ++i) pixel.techniques[i] += static_cast<float>(counts.samples[i] - before[i]);
+  if constexpr ((N & kNeedsBounces) != 0)
+    for (int k = 0; k < more.count; ++k)
+      sum += followPath<N>(world, in.sampler, pixelKey, sample * static_cast<uint32_t>(in.samplesPerHit) + static_cast<uint32_t>(k), more.list[k], in.depth, counts);
+  return sum;
+}
+
+template <uint32_t N>
+void renderTile(const KernelInput& in, const Tile& tile, FilmBuffer& film, Pilot* pilot, Counts& counts) {
+  const float exposure = in.scene.scene.film.exposure;
+  for (int y = tile.y0; y < tile.y1; ++y)
+    for (int x = tile.x0; x < tile.x1; ++x) {
+      const int px = x + in.x0, py = y + in.y0;
+      const uint32_t key = in.sampler.pixelKey(static_cast<uint32_t>(px), static_cast<uint32_t>(py));
+      const size_t index = static_cast<size_t>(y) * static_cast<size_t>(film.width) + static_cast<size_t>(x);
+      Pixel& pixel = film.pixels[index];
+      const Fractions* fractions = in.perPixel != nullptr ? &(*in.perPixel)[index] : nullptr;
+      PilotPixel* pilotPixel = pilot != nullptr ? &pilot->pixels[index] : nullptr;
+      for (uint32_t s = tile.firstSample; s < tile.firstSample + tile.samples; ++s) {
+        const Vec2f offset = in.filter.sample(in.sampler.get2D(key, kFilmPoint, s));
+        const Vec2f lens = in.camera.needsLens() ? in.sampler.get2D(key, kLensPoint, s) : Vec2f{};
+        const Ray ray = in.camera.ray(static_cast<float>(px) + 0.5f + offset.x, static_cast<float>(py) + 0.5f + offset.y, lens);
+        const Rgb value = cameraSample<N>(in, ray, key, s, fractions, pixel, pilotPixel, counts) * exposure;
+        if (counts.rare.admit(value)) pixel.add(value);
+      }
+    }
+}
+
+}  // namespace wardmis

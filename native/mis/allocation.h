@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How the samples of a hit are shared between techniques, as data: expected counts n_i and weight coefficients a_i.
+// The multi-sample estimator (Veach 1995; the paper's Eq. 3) of the integral of f, with X_ij of density p_i:
+//   F = sum_i 1/n_i sum_j w_i(X_ij) f(X_ij)/p_i(X_ij),   w_i = (a_i p_i)^beta / sum_k (a_k p_k)^beta
+// Balance weights are a = n, beta = 1; the paper's Eq. 14 is a = 1 ("nonbalance"); the power heuristic a = n, beta = 2.
+// n_i is an expected count: the actual one is n_i rounded up or down at random (systematicCounts), independently of the
+// samples, so that F is unbiased for any n_i > 0.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include "mis/moments.h"
+
+namespace wardmis {
+
+enum class AllocationRule : uint8_t {
+  kEqual,         // Def. 7: n_i = N/n
+  kVariance,      // Def. 8: n_i proportional to sigma^2_i,eq
+  kSecondMoment,  // Def. 9: n_i proportional to 1/m^2_i
+  kAlbedo,        // half to the light, half to the lobes by albedo: the usual path tracer's one BSDF and one light sample
+};
+enum class WeightRule : uint8_t { kBalance, kNonbalance, kPower };
+enum class Integrand : uint8_t { kSplit, kJoint };
+
+// The weights that the paper pairs with a rule.
+constexpr WeightRule paperWeights(AllocationRule rule) {
+  return rule == AllocationRule::kVariance ? WeightRule::kNonbalance : WeightRule::kBalance;
+}
+// Whether the rule asks for moments, that is, for a pilot.
+constexpr bool needsMoments(AllocationRule rule) {
+  return rule == AllocationRule::kVariance || rule == AllocationRule::kSecondMoment;
+}
+
+// Fractions of one integrand's techniques (those in `used`), from its moments; they sum to 1 over `used`.
+// Equal where the moments say nothing (a zero, not finite). Clamped to [minimum, 1 - (n-1) minimum].
+Fractions allocate(AllocationRule rule, const Moments& m, TechniqueMask used, float minimum);
+
+// Fractions of a hit whose integrands share samples. Joint: those of the one integrand. Split: lobe : light as the
+// specular integrand wants, cosine : light as the diffuse one, the light samples shared by both.
+Fractions combineSplit(const Fractions& specular, const Fractions& diffuse);
+
+// Restricts fractions to the techniques that a hit has, and renormalises.
+Fractions restrict(const Fractions& a, TechniqueMask available);
+
+// Number of samples of each technique at one hit: n points (j + u)/n over the cumulated fractions. Each count is n a_i
+// rounded up or down, their sum is n, and its mean over u uniform in [0, 1) is n a_i exactly.
+inline std::array<int, kTechniques> systematicCounts(const Fractions& a, int n, float u) {
+  std::array<int, kTechniques> counts{};
+  int last = kTechniques - 1;  // takes what is left; never a technique without a share
+  while (last > 0 && !(a[last] > 0)) --last;
+  float cumulated = 0;
+  int before = 0;
+  for (int i = 0; i < last; ++i) {
+    cumulated += a[i];
+    // points below the cumulated fraction: the number of j with (j + u)/n < cumulated
+    const int below = std::min(n, std::max(before, static_cast<int>(std::ceil(cumulated * static_cast<float>(n) - u))));
+    counts[i] = below - before;
+    before = below;
+  }
+  counts[last] = n - before;
+  return counts;
+}
+
+// The weights of one hit, ready for use.
+struct Mixture {
+  Fractions n{};         // expected counts n_i
+  Fractions a{};         // coefficients a_i; 0 for a technique that takes no samples
+  Fractions aOverN{};    // a_i/n_i
+  bool squared = false;  // beta = 2
+
+  Mixture() = default;
+  Mixture(const Fractions& fractions, int samples, WeightRule rule) : squared(rule == WeightRule::kPower) {
+    for (int i = 0; i < kTechniques; ++i) {
+      n[i] = fractions[i] * static_cast<float>(samples);
+      if (!(n[i] > 0)) continue;
+      a[i] = rule == WeightRule::kNonbalance ? 1 : n[i];
+      aOverN[i] = rule == WeightRule::kNonbalance ? 1 / n[i] : 1;
+    }
+  }
+
+  // w_i / (n_i p_i): what f is to be multiplied by for a sample of technique i, where `used` techniques share the
+  // integrand and p holds their densities at the sample (p[i] > 0).
+  float scale(int i, const Fractions& p, TechniqueMask used) const {
+    float sum = 0, sum2 = 0;
+    for (int k = 0; k < kTechniques; ++k) {
+      const float ap = (used >> k & 1u) != 0 ? a[k] * p[k] : 0.0f;
+      sum += ap;
+      if (squared) sum2 += square(ap / (a[i] * p[i]));  // as ratios: p^2 overflows
+    }
+    if (!(sum > 0)) return 0;  // every density underflowed: so did f
+    return squared ? 1 / (sum2 * n[i] * p[i]) : aOverN[i] / sum;
+  }
+
+ private:
+  static constexpr float square(float x) { return x * x; }
+};
+
+std::string_view name(AllocationRule);
+std::string_view name(WeightRule);
+std::string_view name(Integrand);
+
+}  // namespace wardmis
