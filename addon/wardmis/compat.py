@@ -24,6 +24,27 @@ def _foreach(collection: Any, attribute: str, width: int, dtype: type) -> np.nda
     return out.reshape(-1, width) if width > 1 else out
 
 
+def _raw_or_foreach(collection: Any, attribute: str, width: int, dtype: type) -> np.ndarray:
+    """As _foreach, but up to 60 times faster where the attribute is at the start of each element of a plain array.
+
+    Whether it is, is checked on the addresses and on a few elements; if not, foreach_get does it.
+    """
+    count = len(collection)
+    if count < 2:
+        return _foreach(collection, attribute, width, dtype)
+    first = collection[0].as_pointer()
+    stride = collection[1].as_pointer() - first
+    in_a_row = collection[count - 1].as_pointer() - first == stride * (count - 1)
+    if not in_a_row or stride % 4 or not 4 * width <= stride <= 16:
+        return _foreach(collection, attribute, width, dtype)
+    words = np.ctypeslib.as_array((ctypes.c_uint32 * (count * stride // 4)).from_address(first)).view(dtype).reshape(count, -1)
+    for i in (0, 1, count // 3, count // 2, count - 1):
+        if not np.array_equal(words[i, :width], np.array(getattr(collection[i], attribute), dtype, ndmin=1)):
+            return _foreach(collection, attribute, width, dtype)
+    copy = words[:, :width].copy()  # Blender owns the array
+    return copy if width > 1 else copy.reshape(-1)
+
+
 def positions(mesh: Any) -> np.ndarray:
     """(n, 3) float32."""
     if VERSION >= (3, 5, 0):
@@ -35,35 +56,13 @@ def corner_vertices(mesh: Any) -> np.ndarray:
     """The vertex of every face corner, (n,) int32."""
     if VERSION >= (3, 6, 0):
         return _foreach(mesh.attributes[".corner_vert"].data, "value", 1, np.int32)
-    return _foreach(mesh.loops, "vertex_index", 1, np.int32)
+    return _raw_or_foreach(mesh.loops, "vertex_index", 1, np.int32)
 
 
 def triangle_corners(mesh: Any) -> np.ndarray:
     """The three corners of every triangle of the tessellation, (n, 3) uint32."""
     mesh.calc_loop_triangles()
-    triangles = mesh.loop_triangles
-    raw = _raw_triangle_corners(triangles)
-    return raw if raw is not None else _foreach(triangles, "loops", 3, np.int32).view(np.uint32)
-
-
-def _raw_triangle_corners(triangles: Any) -> np.ndarray | None:
-    """The same straight from Blender's array, 20 to 60 times faster, or None where the array is not laid out as expected.
-
-    3.4 and 3.5 keep (3 corners, face), later versions 3 corners; anything else makes the checks fail.
-    """
-    count = len(triangles)
-    if count < 2:
-        return None
-    first = triangles[0].as_pointer()
-    stride = triangles[1].as_pointer() - first
-    if stride not in (12, 16) or triangles[count - 1].as_pointer() - first != stride * (count - 1):
-        return None
-    words = stride // 4
-    raw = np.ctypeslib.as_array((ctypes.c_uint32 * (count * words)).from_address(first)).reshape(count, words)
-    for i in {0, 1, count // 3, count // 2, count - 1}:
-        if tuple(raw[i, :3]) != tuple(triangles[i].loops):
-            return None
-    return np.ascontiguousarray(raw[:, :3]) if words > 3 else raw.copy()
+    return _raw_or_foreach(mesh.loop_triangles, "loops", 3, np.int32).view(np.uint32)
 
 
 def triangle_faces(mesh: Any) -> np.ndarray:
@@ -110,7 +109,7 @@ def uvs(layer: Any) -> np.ndarray:
     """A UV layer, one per corner, (n, 2) float32."""
     if VERSION >= (3, 5, 0):
         return _foreach(layer.uv, "vector", 2, np.float32)
-    return _foreach(layer.data, "uv", 2, np.float32)
+    return _raw_or_foreach(layer.data, "uv", 2, np.float32)
 
 
 # --- lights, world, objects -----------------------------------------------------------------------------------------
@@ -167,3 +166,14 @@ def add_shader_menu() -> Any:
     if VERSION >= (4, 0, 0):
         return bpy.types.NODE_MT_category_shader_shader
     return bpy.types.NODE_MT_category_SH_NEW_SHADER
+
+
+# The Principled BSDF was renamed and rebuilt in 4.0; the extras are those of its inputs that are left out.
+if VERSION >= (4, 0, 0):
+    PRINCIPLED_SPECULAR, PRINCIPLED_SPECULAR_OF_IOR = "Specular IOR Level", True
+    PRINCIPLED_EMISSION = "Emission Color"
+    PRINCIPLED_EXTRAS = ("Subsurface Weight", "Transmission Weight", "Coat Weight", "Sheen Weight", "Thin Film Thickness")
+else:
+    PRINCIPLED_SPECULAR, PRINCIPLED_SPECULAR_OF_IOR = "Specular", False
+    PRINCIPLED_EMISSION = "Emission"
+    PRINCIPLED_EXTRAS = ("Subsurface", "Transmission", "Clearcoat", "Sheen")

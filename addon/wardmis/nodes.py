@@ -135,11 +135,20 @@ def draw_menu(self, context):
         add.use_transform = True
 
 
+def in_use() -> bool:
+    trees = [material.node_tree for material in bpy.data.materials if material.node_tree] + list(bpy.data.node_groups)
+    return any(node.bl_idname == WardBSDFNode.bl_idname for tree in trees for node in tree.nodes)
+
+
 def register():
-    bpy.utils.register_class(WardBSDFNode)
+    if bpy.types.Node.bl_rna_get_subclass_py(WardBSDFNode.bl_idname) is None:
+        bpy.utils.register_class(WardBSDFNode)
     compat.add_shader_menu().append(draw_menu)
 
 
 def unregister():
     compat.add_shader_menu().remove(draw_menu)
-    bpy.utils.unregister_class(WardBSDFNode)
+    # while a file holds such nodes the class stays: up to 4.3 Blender's evaluated copies of them would keep a dangling
+    # pointer to it, and the next file that is opened would crash Blender
+    if not in_use():
+        bpy.utils.unregister_class(WardBSDFNode)
