@@ -42,10 +42,9 @@ def export_image(image: Any) -> ImageData:
     if missing(image):
         return ImageData(image.name, "linear", pixels=texels(image)[..., :3])
     color_space = COLOR_SPACES.get(image.colorspace_settings.name, "sRGB")
-    content = _file_content(image)
-    for signature, mime_type in SIGNATURES:
-        if content.startswith(signature) and image.colorspace_settings.name in COLOR_SPACES:
-            return ImageData(image.name, color_space, encoded=content, mime_type=mime_type)
+    mime_type = _mime_type(image)
+    if mime_type and image.colorspace_settings.name in COLOR_SPACES:
+        return ImageData(image.name, color_space, encoded=_file(image), mime_type=mime_type)
     pixels = _pixels(image)
     # Blender has already turned float pixels into linear ones
     return ImageData(image.name, "linear" if pixels.dtype == np.float32 else color_space, pixels=pixels)
@@ -59,7 +58,7 @@ def missing(image: Any) -> str | None:
         return "a render or viewer result cannot be read as a texture; save it as a file"
     if image.source == "FILE" and not image.is_dirty and not image.packed_file and not os.path.isfile(_path(image)):
         return f"its file '{_path(image)}' is missing"
-    if not _file_content(image) and 0 in image.size:
+    if not _mime_type(image) and 0 in image.size:
         return f"it cannot be read from '{_path(image)}'"
     return None
 
@@ -104,15 +103,22 @@ def _path(image: Any) -> str:
     return str(bpy.path.abspath(path, library=image.library))
 
 
-def _file_content(image: Any) -> bytes:
-    """The bytes of the file that the image was read from; none if it has been changed since, or is not one file."""
+def _mime_type(image: Any) -> str:
+    """Of the file that the image was read from, if it is still what the file holds and the renderer reads such files."""
     if image.is_dirty or image.source not in {"FILE", "TILED"}:
-        return b""
+        return ""
+    head = _file(image, 16)
+    return next((mime_type for signature, mime_type in SIGNATURES if head.startswith(signature)), "")
+
+
+def _file(image: Any, size: int = -1) -> bytes:
+    """The first bytes, or all, of the file on disk or packed."""
     if image.packed_files:
-        return bytes(image.packed_files[0].data)
+        content = bytes(image.packed_files[0].packed_file.data)
+        return content[:size] if size >= 0 else content
     try:
         with open(_path(image), "rb") as file:
-            return file.read()
+            return file.read(size)
     except OSError:
         return b""
 

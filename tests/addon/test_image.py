@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Blender's images -> files as they are, or pixels; and what is said about those that cannot be shown."""
+
+import os
+import tempfile
+import unittest
+from types import SimpleNamespace
+
+import bpy
+import numpy as np
+from wardmis.export.image import deviations, export_image, missing, texels
+
+LINEAR = "Linear" if bpy.app.version < (4, 0, 0) else "Linear Rec.709"
+
+
+class Images(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def generated(self, is_float, color_space="sRGB"):
+        """2 x 1 texels."""
+        image = bpy.data.images.new("I", 2, 1, alpha=True, float_buffer=is_float)
+        image.colorspace_settings.name = color_space
+        image.pixels.foreach_set(np.array([0.2, 0.4, 0.6, 1.0, 0.0, 1.0, 0.8, 0.5], np.float32))
+        self.addCleanup(lambda: bpy.data.images.remove(image))
+        return image
+
+    def file(self, file_format, is_float=False):
+        """An image read from a file of this format, and the file's bytes."""
+        image = self.generated(is_float, LINEAR if is_float else "sRGB")
+        path = os.path.join(self.folder.name, "image")
+        image.filepath_raw, image.file_format = path, file_format
+        image.save()
+        loaded = bpy.data.images.load(path)
+        loaded.colorspace_settings.name = LINEAR if is_float else "sRGB"  # 5.2 keeps an EXR's own
+        self.addCleanup(lambda: bpy.data.images.remove(loaded))
+        with open(path, "rb") as file:
+            return loaded, file.read()
+
+    def test_files_that_the_renderer_reads_are_handed_on_byte_for_byte(self):
+        cases = (("PNG", False, "image/png"), ("JPEG", False, "image/jpeg"), ("OPEN_EXR", True, "image/x-exr"), ("HDR", True, "image/vnd.radiance"))
+        for file_format, is_float, mime_type in cases:
+            with self.subTest(file_format):
+                image, content = self.file(file_format, is_float)
+                data = export_image(image)
+                self.assertEqual((data.mime_type, data.encoded == content), (mime_type, True))
+                self.assertIsNone(data.pixels)
+                self.assertEqual(data.color_space, "linear" if is_float else "sRGB")
+                self.assertIsNone(missing(image))
+
+    def test_other_files_become_pixels(self):
+        image, _ = self.file("TIFF")
+        data = export_image(image)
+        self.assertIsNone(data.encoded)
+        self.assertEqual((data.pixels.dtype, data.pixels.shape[:2], data.color_space), (np.uint8, (1, 2), "sRGB"))
+        self.assertEqual(data.pixels[0, 0, :3].tolist(), [51, 102, 153])
+
+    def test_generated_images_become_pixels(self):
+        data = export_image(self.generated(is_float=False))
+        self.assertEqual(data.pixels.tolist(), [[[51, 102, 153, 255], [0, 255, 204, 128]]])
+        data = export_image(self.generated(is_float=True, color_space=LINEAR))
+        self.assertEqual(data.color_space, "linear")
+        np.testing.assert_allclose(data.pixels[0, 0], (0.2, 0.4, 0.6, 1.0), rtol=1e-6)
+
+    def test_packed_file_survives_the_loss_of_the_original(self):
+        image, content = self.file("PNG")
+        image.pack()
+        os.remove(os.path.join(self.folder.name, "image"))
+        self.assertIsNone(missing(image))
+        self.assertEqual(export_image(image).encoded, content)
+
+    def test_painted_image_is_not_its_file_any_more(self):
+        image, content = self.file("PNG")
+        image.pixels[0] = 1.0
+        data = export_image(image)
+        self.assertIsNone(data.encoded)
+        self.assertEqual(data.pixels[0, 0, 0], 255)
+        with open(os.path.join(self.folder.name, "image"), "rb") as file:
+            self.assertEqual(file.read(), content)
+        self.assertTrue(image.is_dirty)
+
+    def test_missing_file_is_named_and_magenta(self):
+        image, _ = self.file("PNG")
+        path = os.path.join(self.folder.name, "image")
+        os.remove(path)
+        self.assertIn(path, missing(image))
+        np.testing.assert_array_equal(export_image(image).pixels, [[[1, 0, 1]]])
+
+    def test_non_color_is_linear_and_others_are_noted(self):
+        image, _ = self.file("PNG")
+        image.colorspace_settings.name = "Non-Color"
+        self.assertEqual(export_image(image).color_space, "linear")
+        self.assertEqual(deviations(image), [])
+        image.colorspace_settings.name = "Filmic sRGB" if bpy.app.version < (4, 0, 0) else "AgX Base sRGB"
+        self.assertIn("is not supported", deviations(image)[0])
+        self.assertEqual(export_image(image).color_space, "sRGB")
+
+    def test_texels_are_linear_rgba(self):
+        image = self.generated(is_float=False)
+        linear = ((0.4 + 0.055) / 1.055) ** 2.4
+        np.testing.assert_allclose(texels(image)[0, 0, (1, 3)], (linear, 1.0), rtol=1e-5)
+        self.assertAlmostEqual(float(texels(image)[0, 1, 3]), 128 / 255, places=6)  # alpha is not a colour
+
+    def test_moving_and_tiled_images_are_noted(self):
+        image = self.generated(is_float=False)
+        image.source = "SEQUENCE"
+        self.assertIn("sequences", deviations(image)[0])
+        tiled = bpy.data.images.new("Tiled", 2, 2, tiled=True)
+        self.addCleanup(lambda: bpy.data.images.remove(tiled))
+        tiled.tiles.new(1002)
+        self.assertIn("1001", deviations(tiled)[0])
+
+    def test_render_result_cannot_be_a_texture(self):
+        viewer = SimpleNamespace(type="RENDER_RESULT", source="VIEWER")  # Blender makes them by rendering alone
+        self.assertIn("result", missing(viewer))

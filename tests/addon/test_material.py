@@ -1,0 +1,389 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Shader trees -> MaterialData, and the notes about what has no counterpart."""
+
+import math
+import unittest
+
+import bpy
+import numpy as np
+from wardmis import compat
+from wardmis.export.context import ExportContext
+from wardmis.export.image import export_image
+from wardmis.export.material import export_material
+
+MAGENTA = (1.0, 0.0, 1.0)
+
+
+class MaterialCase(unittest.TestCase):
+    def setUp(self):
+        for collection in (bpy.data.materials, bpy.data.images, bpy.data.node_groups):
+            for block in collection:
+                collection.remove(block)
+        self.material = bpy.data.materials.new("M")
+        self.material.use_nodes = True
+        self.tree = self.material.node_tree
+        self.tree.nodes.clear()
+        self.output = self.tree.nodes.new("ShaderNodeOutputMaterial")
+        self.context = ExportContext(export_image)
+        self.context.owner = "O"
+
+    def node(self, kind, tree=None, **inputs):
+        """A node with constant inputs; keys are socket names with _ for a space, or i0, i1 ... for their index."""
+        node = (tree or self.tree).nodes.new(kind)
+        for key, value in inputs.items():
+            socket = node.inputs[int(key[1:])] if key[1:].isdigit() else node.inputs[key.replace("_", " ")]
+            socket.default_value = value
+        if "Anisotropy" in node.inputs and "Anisotropy" not in inputs:
+            node.inputs["Anisotropy"].default_value = 0.0  # 3.4 begins with 0.5
+        return node
+
+    def link(self, source, target, key=0, output=0):
+        tree = source.id_data
+        tree.links.new(source.outputs[output], target.inputs[key])
+
+    def export(self, surface=None):
+        if surface is not None:
+            self.link(surface, self.output, "Surface")
+        return export_material(self.material, self.context)
+
+    def image(self, values, name="I", color_space="Non-Color", is_float=True):
+        """A float image of rows from the bottom."""
+        values = np.array(values, np.float32)
+        image = bpy.data.images.new(name, values.shape[1], values.shape[0], float_buffer=is_float, alpha=True)
+        image.colorspace_settings.name = color_space
+        image.pixels.foreach_set(values.ravel())
+        return image
+
+    def texture(self, image):
+        node = self.node("ShaderNodeTexImage")
+        node.image = image
+        return node
+
+    def assertRgb(self, found, expected):
+        np.testing.assert_allclose(found, expected, rtol=1e-5, atol=1e-6)
+
+    def assertNoted(self, *words):
+        self.assertTrue(any(all(word in note for word in words) for note in self.context.notes), self.context.notes)
+
+
+class Shaders(MaterialCase):
+    def test_ward(self):
+        node = self.node("WardBSDFNode", Diffuse_Color=(0.1, 0.2, 0.3, 1), Specular_Color=(0.4, 0.5, 0.6, 1))
+        node.inputs["Alpha X"].default_value, node.inputs["Alpha Y"].default_value = 0.05, 0.3
+        node.inputs["Rotation"].default_value = 0.25
+        node.variant = "ward-dur"
+        data = self.export(node)
+        self.assertEqual((data.name, data.variant), ("M", "ward-dur"))
+        self.assertRgb(data.diffuse.value, (0.1, 0.2, 0.3))
+        self.assertRgb(data.specular.value, (0.4, 0.5, 0.6))
+        self.assertRgb((data.alpha_x.value, data.alpha_y.value, data.rotation), (0.05, 0.3, math.pi / 2))
+        self.assertEqual(self.context.notes, [])
+
+    def test_diffuse(self):
+        data = self.export(self.node("ShaderNodeBsdfDiffuse", Color=(0.1, 0.2, 0.3, 1)))
+        self.assertRgb(data.diffuse.value, (0.1, 0.2, 0.3))
+        self.assertRgb(data.specular.value, (0, 0, 0))
+        self.assertEqual(self.context.notes, [])
+
+    def test_rough_diffuse_is_noted(self):
+        self.export(self.node("ShaderNodeBsdfDiffuse", Roughness=0.5))
+        self.assertNoted("material 'M' on object 'O'", "Oren-Nayar")
+
+    def test_glossy_under_every_name_that_this_blender_has(self):
+        for kind in ("ShaderNodeBsdfGlossy", "ShaderNodeBsdfAnisotropic"):
+            if not hasattr(bpy.types, kind):
+                continue
+            with self.subTest(kind):
+                data = self.export(self.node(kind, Color=(0.5, 0.6, 0.7, 1), Roughness=0.3))
+                self.assertRgb(data.specular.value, (0.5, 0.6, 0.7))
+                self.assertRgb((data.alpha_x.value, data.alpha_y.value), (0.09, 0.09))
+                self.assertRgb(data.diffuse.value, (0, 0, 0))
+
+    def test_anisotropy_as_in_cycles(self):
+        for anisotropy, expected in ((0.5, (0.045, 0.18)), (-0.5, (0.18, 0.045))):
+            data = self.export(self.node("ShaderNodeBsdfAnisotropic", Roughness=0.3, Anisotropy=anisotropy, Rotation=0.5))
+            self.assertRgb((data.alpha_x.value, data.alpha_y.value), expected)
+            self.assertAlmostEqual(data.rotation, math.pi)
+
+    def test_principled(self):
+        node = self.node("ShaderNodeBsdfPrincipled", Base_Color=(0.8, 0.4, 0.2, 1), Metallic=0.25, Roughness=0.4)
+        node.inputs[compat.PRINCIPLED_SPECULAR].default_value = 0.5
+        if compat.PRINCIPLED_SPECULAR_OF_IOR:
+            node.inputs["IOR"].default_value = 1.5
+        data = self.export(node)
+        self.assertRgb(data.diffuse.value, (0.6, 0.3, 0.15))
+        self.assertRgb(data.specular.value, (0.2 + 0.03, 0.1 + 0.03, 0.05 + 0.03))
+        self.assertRgb((data.alpha_x.value, data.alpha_y.value), (0.16, 0.16))
+        self.assertRgb(data.emission.value, (0, 0, 0))
+        self.assertEqual(self.context.notes, [])
+
+    def test_principled_emission_and_extras(self):
+        node = self.node("ShaderNodeBsdfPrincipled", Emission_Strength=3.0, Alpha=0.5)
+        node.inputs[compat.PRINCIPLED_EMISSION].default_value = (0.5, 1, 2, 1)
+        node.inputs[compat.PRINCIPLED_EXTRAS[1]].default_value = 1.0
+        data = self.export(node)
+        self.assertRgb(data.emission.value, (1.5, 3, 6))
+        self.assertNoted("'Transmission", "left out")
+        self.assertNoted("alpha below 1")
+
+    def test_emission(self):
+        data = self.export(self.node("ShaderNodeEmission", Color=(1, 0.5, 0.25, 1), Strength=8.0))
+        self.assertRgb(data.emission.value, (8, 4, 2))
+        self.assertFalse(data.needs_uv)
+
+    def test_add_and_mix(self):
+        diffuse = self.node("ShaderNodeBsdfDiffuse", Color=(0.4, 0.4, 0.4, 1))
+        glossy = self.node("ShaderNodeBsdfAnisotropic", Color=(0.8, 0.8, 0.8, 1), Roughness=0.5)
+        add, mix = self.node("ShaderNodeAddShader"), self.node("ShaderNodeMixShader", i0=0.25)
+        for parent, first in ((add, 0), (mix, 1)):
+            self.link(diffuse, parent, first)
+            self.link(glossy, parent, first + 1)
+        data = self.export(add)
+        self.assertRgb((data.diffuse.value[0], data.specular.value[0], data.alpha_x.value), (0.4, 0.8, 0.25))
+        data = self.export(mix)
+        self.assertRgb((data.diffuse.value[0], data.specular.value[0], data.alpha_x.value), (0.3, 0.2, 0.25))
+        self.assertEqual(self.context.notes, [])
+
+    def test_two_lobes_become_one_of_mean_alpha_and_a_note(self):
+        add = self.node("ShaderNodeAddShader")
+        for i, (color, roughness) in enumerate(((0.6, 0.2), (0.2, 0.6))):
+            glossy = self.node("ShaderNodeBsdfAnisotropic", Color=(color, color, color, 1), Roughness=roughness)
+            self.link(glossy, add, i)
+        data = self.export(add)
+        self.assertRgb(data.specular.value, (0.8, 0.8, 0.8))
+        self.assertAlmostEqual(data.alpha_x.value, 0.75 * 0.04 + 0.25 * 0.36, places=5)
+        self.assertNoted("two glossy lobes")
+
+    def test_two_lobes_of_one_shape_add_exactly(self):
+        add = self.node("ShaderNodeAddShader")
+        for i in range(2):
+            self.link(self.node("ShaderNodeBsdfAnisotropic", Color=(0.3, 0.3, 0.3, 1), Roughness=0.2), add, i)
+        self.assertRgb(self.export(add).specular.value, (0.6, 0.6, 0.6))
+        self.assertEqual(self.context.notes, [])
+
+    def test_without_nodes_the_viewport_color_is_diffuse(self):
+        if bpy.app.version >= (5, 0, 0):
+            self.skipTest("every material has nodes")
+        self.material.use_nodes = False
+        self.material.diffuse_color = (0.2, 0.4, 0.6, 1)
+        self.assertRgb(self.export().diffuse.value, (0.2, 0.4, 0.6))
+        self.material.metallic, self.material.roughness = 1.0, 0.5
+        data = self.export()
+        self.assertRgb(data.diffuse.value, (0, 0, 0))
+        self.assertRgb((*data.specular.value, data.alpha_x.value), (0.2, 0.4, 0.6, 0.25))
+
+
+class NotUnderstood(MaterialCase):
+    def test_unsupported_shader_is_magenta_and_named(self):
+        self.node("ShaderNodeRGB")
+        for kind in ("ShaderNodeBsdfGlass", "ShaderNodeHoldout", "ShaderNodeBsdfTransparent", "ShaderNodeSubsurfaceScattering"):
+            with self.subTest(kind):
+                self.tree.nodes.remove(self.tree.nodes[-1])
+                node = self.node(kind)
+                node.name = "Odd one"
+                self.assertRgb(self.export(node).diffuse.value, MAGENTA)
+                expected = f"material 'M' on object 'O': node 'Odd one' ({node.bl_label}) is not supported; rendered as magenta"
+                self.assertIn(expected, self.context.notes)
+
+    def test_output_without_a_surface_is_magenta(self):
+        self.assertRgb(self.export().diffuse.value, MAGENTA)
+        self.assertNoted("no surface connected")
+
+    def test_no_output_is_magenta(self):
+        self.tree.nodes.clear()
+        self.assertRgb(self.export().diffuse.value, MAGENTA)
+        self.assertNoted("no output node")
+
+    def test_missing_images_are_magenta_and_named(self):
+        diffuse = self.node("ShaderNodeBsdfDiffuse")
+        texture = self.texture(None)
+        self.link(texture, diffuse, "Color")
+        self.assertRgb(self.export(diffuse).diffuse.value, MAGENTA)
+        self.assertNoted("has no image")
+        image = bpy.data.images.new("Lost", 1, 1)
+        image.source, image.filepath = "FILE", "//nowhere/lost.png"
+        texture.image = image
+        data = self.export(diffuse)
+        self.assertRgb(data.diffuse.value, MAGENTA)
+        self.assertIsNone(data.diffuse.texture)
+        self.assertNoted("material 'M'", "'Lost'", "lost.png", "missing")
+
+    def test_texture_that_is_not_an_image_is_noted_and_the_constant_used(self):
+        diffuse = self.node("ShaderNodeBsdfDiffuse", Color=(0.1, 0.2, 0.3, 1))
+        self.link(self.node("ShaderNodeTexNoise"), diffuse, "Color")
+        self.assertRgb(self.export(diffuse).diffuse.value, (0.1, 0.2, 0.3))
+        self.assertNoted("Noise Texture", "'Color'")
+
+    def test_volume_displacement_and_normals_are_noted(self):
+        diffuse = self.node("ShaderNodeBsdfDiffuse")
+        self.link(self.node("ShaderNodeNormalMap"), diffuse, "Normal")
+        self.link(self.node("ShaderNodeVolumeScatter"), self.output, "Volume")
+        self.link(self.node("ShaderNodeDisplacement"), self.output, "Displacement")
+        self.export(diffuse)
+        self.assertNoted("volume")
+        self.assertNoted("displacement")
+        self.assertNoted("normal")
+
+
+class Trees(MaterialCase):
+    def test_reroutes_mutes_and_groups(self):
+        group = bpy.data.node_groups.new("G", "ShaderNodeTree")
+        compat.add_group_socket(group, "Paint", "NodeSocketColor", "INPUT").default_value = (0.9, 0, 0, 1)
+        compat.add_group_socket(group, "Shader", "NodeSocketShader", "OUTPUT")
+        given, result = group.nodes.new("NodeGroupInput"), group.nodes.new("NodeGroupOutput")
+        diffuse, reroute = group.nodes.new("ShaderNodeBsdfDiffuse"), group.nodes.new("NodeReroute")
+        gamma = self.node("ShaderNodeGamma", group, Gamma=3.0)
+        gamma.mute = True
+        for source, target, key in ((given, gamma, "Color"), (gamma, reroute, 0), (reroute, diffuse, "Color"), (diffuse, result, 0)):
+            self.link(source, target, key)
+        first, second = (self.tree.nodes.new("ShaderNodeGroup") for _ in range(2))
+        first.node_tree = second.node_tree = group
+        green = self.node("ShaderNodeRGB")
+        green.outputs[0].default_value = (0, 0.5, 0, 1)
+        self.link(green, first, 0)
+        mix = self.node("ShaderNodeMixShader", i0=0.5)
+        self.link(first, mix, 1)
+        self.link(second, mix, 2)
+        self.assertRgb(self.export(mix).diffuse.value, (0.45, 0.25, 0))
+        self.assertEqual(self.context.notes, [])
+
+    def test_muted_link_and_muted_shader_are_black(self):
+        mix, diffuse = self.node("ShaderNodeMixShader", i0=0.5), self.node("ShaderNodeBsdfDiffuse", Color=(0.4, 0.4, 0.4, 1))
+        emission = self.node("ShaderNodeEmission")
+        emission.mute = True
+        self.link(diffuse, mix, 1)
+        self.link(emission, mix, 2)
+        data = self.export(mix)
+        self.assertRgb((data.diffuse.value[0], data.emission.value[0]), (0.2, 0))
+
+    def test_the_output_that_cycles_takes(self):
+        self.link(self.node("ShaderNodeBsdfDiffuse", Color=(0.1, 0.1, 0.1, 1)), self.output, "Surface")
+        self.output.target = "EEVEE"
+        other = self.node("ShaderNodeOutputMaterial")
+        other.target = "CYCLES"
+        self.link(self.node("ShaderNodeBsdfDiffuse", Color=(0.7, 0.7, 0.7, 1)), other, "Surface")
+        self.assertRgb(self.export().diffuse.value, (0.7, 0.7, 0.7))
+
+    def test_color_in_a_shaders_place_shines(self):
+        rgb = self.node("ShaderNodeRGB")
+        rgb.outputs[0].default_value = (1, 2, 3, 1)
+        self.assertRgb(self.export(rgb).emission.value, (1, 2, 3))
+
+
+class Values(MaterialCase):
+    def of(self, node, output=0):
+        diffuse = self.node("ShaderNodeBsdfDiffuse")
+        self.link(node, diffuse, "Color", output)
+        return self.export(diffuse).diffuse
+
+    def pixels(self, color_input):
+        return self.context.images[self.context.textures[color_input.texture.index].image].pixels
+
+    def test_math_of_constants(self):
+        node = self.node("ShaderNodeMath", i0=0.5, i1=0.25)
+        for operation, expected in (("ADD", 0.75), ("SUBTRACT", 0.25), ("MULTIPLY", 0.125), ("DIVIDE", 2.0), ("POWER", 0.5**0.25)):
+            node.operation = operation
+            self.assertRgb(self.of(node).value, [expected] * 3)
+        node.operation, node.inputs[1].default_value = "DIVIDE", 0.0
+        self.assertRgb(self.of(node).value, (0, 0, 0))
+
+    def test_mix_gamma_invert_and_channels_of_constants(self):
+        mix = self.node("ShaderNodeMixRGB", i0=0.25, i1=(1, 0, 0, 1), i2=(0, 1, 0, 1))
+        self.assertRgb(self.of(mix).value, (0.75, 0.25, 0))
+        mix.blend_type = "ADD"
+        self.assertRgb(self.of(mix).value, (1, 0.25, 0))
+        new_mix = self.node("ShaderNodeMix")
+        new_mix.data_type = "RGBA"
+        enabled = [socket for socket in new_mix.inputs if socket.enabled]
+        for socket, value in zip(enabled, (0.5, (1, 0, 0, 1), (0, 0, 1, 1))):
+            socket.default_value = value
+        self.assertRgb(self.of(new_mix, [o.enabled for o in new_mix.outputs].index(True)).value, (0.5, 0, 0.5))
+        self.assertRgb(self.of(self.node("ShaderNodeGamma", Color=(0.5, 0.25, 1, 1), Gamma=2.0)).value, (0.25, 0.0625, 1))
+        self.assertRgb(self.of(self.node("ShaderNodeInvert", Color=(0.2, 0.3, 0.4, 1))).value, (0.8, 0.7, 0.6))
+        separate = self.node("ShaderNodeSeparateColor", i0=(0.1, 0.2, 0.3, 1))
+        self.assertRgb(self.of(separate, 1).value, (0.2, 0.2, 0.2))
+        self.assertRgb(self.of(self.node("ShaderNodeCombineColor", i0=0.1, i1=0.2, i2=0.3)).value, (0.1, 0.2, 0.3))
+
+    def test_number_from_a_color_is_its_luminance(self):
+        glossy, rgb = self.node("ShaderNodeBsdfAnisotropic"), self.node("ShaderNodeRGB")
+        rgb.outputs[0].default_value = (0, 1, 0, 1)
+        self.link(rgb, glossy, "Roughness")
+        self.assertAlmostEqual(self.export(glossy).alpha_x.value, 0.7152**2, places=5)
+
+    def test_plain_texture_is_handed_on_as_it_is(self):
+        image = self.image([[(0.1, 0.2, 0.3, 1), (0.4, 0.5, 0.6, 1)]])
+        found = self.of(self.texture(image))
+        self.assertRgb(found.value, (1, 1, 1))
+        np.testing.assert_allclose(self.pixels(found)[0, :, :3], [(0.1, 0.2, 0.3), (0.4, 0.5, 0.6)], rtol=1e-6)
+        self.assertEqual(found.texture.transform, (1, 0, 0, 0, 1, 0))
+
+    def test_mix_shader_scales_a_texture_without_a_new_image(self):
+        image = self.image([[(0.1, 0.2, 0.3, 1)]])
+        diffuse, mix = self.node("ShaderNodeBsdfDiffuse"), self.node("ShaderNodeMixShader", i0=0.25)
+        self.link(self.texture(image), diffuse, "Color")
+        self.link(diffuse, mix, 1)
+        data = self.export(mix)
+        self.assertRgb(data.diffuse.value, (0.75, 0.75, 0.75))
+        self.assertEqual(self.context.images[0].name, "I")
+
+    def test_texture_behind_nodes_is_baked(self):
+        image = self.image([[(0.25, 0.5, 1, 1), (0, 1, 0.5, 1)]])
+        gamma = self.node("ShaderNodeGamma", Gamma=2.0)
+        self.link(self.texture(image), gamma, "Color")
+        pixels = self.pixels(self.of(gamma))
+        np.testing.assert_allclose(pixels, [[(0.0625, 0.25, 1), (0, 1, 0.25)]], rtol=1e-6)
+        ramp = self.node("ShaderNodeValToRGB")
+        ramp.color_ramp.elements[0].color = (1, 0, 0, 1)
+        ramp.color_ramp.elements[1].color = (0, 0, 1, 1)
+        self.link(gamma, ramp, 0)
+        np.testing.assert_allclose(self.pixels(self.of(ramp))[0, 1], (1 - 0.73325, 0, 0.73325), atol=1e-3)
+        self.assertEqual(self.context.notes, [])
+
+    def test_roughness_texture_becomes_alpha(self):
+        image = self.image([[(0.5, 0.5, 0.5, 1), (0.2, 0.2, 0.2, 1)]])
+        node = self.node("ShaderNodeBsdfPrincipled")
+        self.link(self.texture(image), node, "Roughness")
+        data = self.export(node)
+        for alpha in (data.alpha_x, data.alpha_y):
+            self.assertEqual(alpha.texture.channel, 0)
+            np.testing.assert_allclose(self.pixels(alpha)[..., 0] * alpha.value, [(0.25, 0.04)], rtol=1e-5)
+        self.assertEqual(len(self.context.images), 1)
+
+    def test_srgb_texels_are_decoded_before_they_are_baked(self):
+        image = self.image([[(0.5, 0.5, 0.5, 1)]], color_space="sRGB", is_float=False)
+        invert = self.node("ShaderNodeInvert")
+        self.link(self.texture(image), invert, "Color")
+        linear = ((128 / 255 + 0.055) / 1.055) ** 2.4
+        np.testing.assert_allclose(self.pixels(self.of(invert))[0, 0], [1 - linear] * 3, rtol=1e-5)
+
+    def test_alpha_output_of_an_image(self):
+        image = self.image([[(0.5, 0.5, 0.5, 0.25)]])
+        np.testing.assert_allclose(self.pixels(self.of(self.texture(image), "Alpha")), [[[0.25] * 3]], rtol=1e-6)
+
+    def test_second_texture_counts_with_its_mean_and_a_note(self):
+        a, b = self.image([[(0.5, 0.5, 0.5, 1)]], "A"), self.image([[(0.2, 0.2, 0.2, 1), (0.4, 0.4, 0.4, 1)]], "B")
+        mix = self.node("ShaderNodeMixRGB", i0=1.0)
+        mix.blend_type = "MULTIPLY"
+        self.link(self.texture(a), mix, 1)
+        self.link(self.texture(b), mix, 2)
+        np.testing.assert_allclose(self.pixels(self.of(mix)), [[[0.15] * 3]], rtol=1e-5)
+        self.assertNoted("'A' is kept")
+
+    def test_uv_mapping(self):
+        image = self.image([[(1, 1, 1, 1)]])
+        texture, mapping = self.texture(image), self.node("ShaderNodeMapping")
+        mapping.inputs["Location"].default_value = (0.1, 0.2, 0)
+        mapping.inputs["Rotation"].default_value = (0, 0, math.pi / 2)
+        mapping.inputs["Scale"].default_value = (2, 3, 1)
+        self.link(mapping, texture, "Vector")
+        coordinates = self.node("ShaderNodeTexCoord")
+        self.link(coordinates, mapping, "Vector", "UV")
+        # (u, v) is scaled, turned by a quarter, moved: u' = -3 v + 0.1, v' = 2 u + 0.2
+        np.testing.assert_allclose(self.of(texture).texture.transform, (0, -3, 0.1, 2, 0, 0.2), atol=1e-6)
+        mapping.vector_type = "TEXTURE"
+        # the inverse: u = (v' - 0.2)/2 ..., v = -(u' - 0.1)/3
+        np.testing.assert_allclose(self.of(texture).texture.transform, (0, 0.5, -0.1, -1 / 3, 0, 0.1 / 3), atol=1e-6)
+        self.assertEqual(self.context.notes, [])
+        self.link(coordinates, mapping, "Vector", "Generated")
+        self.of(texture)
+        self.assertNoted("Generated")
