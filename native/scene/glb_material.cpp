@@ -237,8 +237,8 @@ int Materials::image(const Json& index, bool isColor) {
 
 Bytes Materials::fetch(const PendingImage& pending) {
   const auto uri = pending.json.find("uri"), view = pending.json.find("bufferView");
-  if (bool(uri) == bool(view)) pending.json.fail("expected either uri or bufferView");
   try {
+    if (bool(uri) == bool(view)) pending.json.fail("expected either uri or bufferView");
     return uri ? buffers_.uri(*uri) : buffers_.view(*view);
   } catch (const Error& e) {
     throw Error(e.code, fmt::format("{} (needed by {})", e.what(), pending.neededBy), e.hint);
@@ -247,16 +247,16 @@ Bytes Materials::fetch(const PendingImage& pending) {
 
 DecodedImage Materials::decode(const PendingImage& pending, const Bytes& bytes, ImageBudget& budget) {
   const Json& json = pending.json;
-  const bool isRaw = json.stringOr("mimeType", "") == "application/x-wardmis-pixels";
-  const auto raw = json.extension(kExtension);
-  if (isRaw && !raw) json.fail("raw pixels need the extension WARDMIS_scene with their size");
-  const auto side = [&](const char* key) { return static_cast<int>(raw->at(key).integer(1, kLargestImageSide)); };
-  constexpr std::pair<std::string_view, bool> kTypes[] = {{"u8", false}, {"f32", true}};
   try {
-    return isRaw ? rawImage(bytes.data, side("width"), side("height"),
-                            static_cast<int>(raw->at("channels").integer(1, 4)), raw->at("type").choice(kTypes),
-                            pending.space, budget)
-                 : decodeImage(bytes.data, pending.space, budget);
+    if (json.stringOr("mimeType", "") != "application/x-wardmis-pixels")
+      return decodeImage(bytes.data, pending.space, budget);
+    const auto raw = json.extension(kExtension);
+    if (!raw) json.fail("raw pixels need the extension WARDMIS_scene with their size");
+    constexpr std::pair<std::string_view, bool> kTypes[] = {{"u8", false}, {"f32", true}};
+    const auto number = [&](const char* key, int most) { return static_cast<int>(raw->at(key).integer(1, most)); };
+    const RawLayout layout{number("width", kLargestImageSide), number("height", kLargestImageSide),
+                           number("channels", 4), raw->at("type").choice(kTypes)};
+    return rawImage(bytes.data, layout, pending.space, budget);
   } catch (const ImageError& e) {
     const auto uri = json.find("uri");
     json.fail(fmt::format("{}{} (needed by {})", uri ? "'" + cleaned(uri->string().substr(0, 80)) + "' " : "",

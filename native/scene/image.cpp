@@ -47,25 +47,25 @@ DecodedImage decodeImage(std::span<const std::byte> file, ColorSpace space, Imag
   return finished(std::move(read.image), space);
 }
 
-DecodedImage rawImage(std::span<const std::byte> data, int width, int height, int channels, bool floats,
-                      ColorSpace space, ImageBudget& budget) {
+DecodedImage rawImage(std::span<const std::byte> data, RawLayout layout, ColorSpace space, ImageBudget& budget) {
+  const size_t values = size_t(layout.width) * layout.height * layout.channels;
+  const size_t size = values * (layout.floats ? sizeof(float) : 1);
+  if (data.size() != size)
+    throw ImageError(fmt::format("{} x {} pixels of {} channels need {} bytes, found {}", layout.width, layout.height,
+                                 layout.channels, size, data.size()));
+  if (!budget.take(size)) throw ImageError("is one of too many images with the same data");
   Image image;
-  image.width = width;
-  image.height = height;
-  image.channels = channels;
-  const size_t values = size_t(width) * height * channels;
-  if (data.size() != values * (floats ? 4 : 1))
-    throw ImageError(fmt::format("{} x {} pixels of {} channels need {} bytes, found {}", width, height, channels,
-                                 values * (floats ? 4 : 1), data.size()));
-  if (!budget.take(data.size())) throw ImageError("is one of too many images with the same data");
-  if (floats) {
+  image.width = layout.width;
+  image.height = layout.height;
+  image.channels = layout.channels;
+  if (layout.floats) {
     image.floats.resize(values);
-    std::memcpy(image.floats.data(), data.data(), data.size());
+    std::memcpy(image.floats.data(), data.data(), size);
   } else {
     image.bytes.resize(values);
-    std::memcpy(image.bytes.data(), data.data(), data.size());
+    std::memcpy(image.bytes.data(), data.data(), size);
   }
-  if (space == ColorSpace::kAuto) space = floats ? ColorSpace::kLinear : ColorSpace::kSrgb;
+  if (space == ColorSpace::kAuto) space = layout.floats ? ColorSpace::kLinear : ColorSpace::kSrgb;
   return finished(std::move(image), space);
 }
 

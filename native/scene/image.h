@@ -46,8 +46,11 @@ class ImageBudget {
 // A PNG, JPEG, OpenEXR or Radiance HDR file, told by its first bytes.
 DecodedImage decodeImage(std::span<const std::byte> file, ColorSpace space, ImageBudget& budget);
 
-// Raw pixels of 8 bits or 32-bit floats, rows from the bottom, as `data` holds them: exactly w * h * channels values.
-DecodedImage rawImage(std::span<const std::byte> data, int width, int height, int channels, bool floats,
-                      ColorSpace space, ImageBudget& budget);
+// Raw pixels of 8 bits or 32-bit floats, rows from the bottom: exactly width * height * channels values.
+struct RawLayout {
+  int width, height, channels;
+  bool floats;
+};
+DecodedImage rawImage(std::span<const std::byte> data, RawLayout layout, ColorSpace space, ImageBudget& budget);
 
 }  // namespace wardmis

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/texture.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace wardmis {
+namespace {
+
+// 2 x 2, grey: 0 1 in the bottom row, 2 3 in the top row.
+Image ramp() { return {"ramp", 2, 2, 1, false, {}, {0, 1, 2, 3}}; }
+
+TEST(Texture, InterpolatesBetweenTexelCentres) {
+  const Image image = ramp();
+  const Texture clamp{0, Wrap::kClamp, Wrap::kClamp, false};
+  EXPECT_FLOAT_EQ(lookUpScalar(image, clamp, {0.25f, 0.25f}, 0), 0);
+  EXPECT_FLOAT_EQ(lookUpScalar(image, clamp, {0.75f, 0.25f}, 0), 1);
+  EXPECT_FLOAT_EQ(lookUpScalar(image, clamp, {0.25f, 0.75f}, 0), 2);
+  EXPECT_FLOAT_EQ(lookUpScalar(image, clamp, {0.5f, 0.5f}, 0), 1.5f);
+  EXPECT_FLOAT_EQ(lookUpScalar(image, clamp, {-9, 9}, 0), 2);
+  EXPECT_FLOAT_EQ(lookUpScalar(image, clamp, {9, -9}, 0), 1);
+}
+
+TEST(Texture, Wraps) {
+  const Image image = ramp();
+  const Texture repeat{0, Wrap::kRepeat, Wrap::kRepeat, false};
+  EXPECT_FLOAT_EQ(lookUpScalar(image, repeat, {0, 0.25f}, 0), 0.5f);  // half of the last, half of the first
+  EXPECT_FLOAT_EQ(lookUpScalar(image, repeat, {-0.25f, 0.25f}, 0), 1);
+  EXPECT_FLOAT_EQ(lookUpScalar(image, repeat, {7.75f, -2.25f}, 0), 3);
+  const Texture mirror{0, Wrap::kMirror, Wrap::kMirror, false};
+  EXPECT_FLOAT_EQ(lookUpScalar(image, mirror, {-0.25f, 0.25f}, 0), 0);
+  EXPECT_FLOAT_EQ(lookUpScalar(image, mirror, {1.25f, 0.25f}, 0), 1);
+  EXPECT_FLOAT_EQ(lookUpScalar(image, mirror, {1.75f, 2.75f}, 0), 2);
+}
+
+TEST(Texture, TakesTheNearestTexel) {
+  const Image image = ramp();
+  for (const Wrap wrap : {Wrap::kRepeat, Wrap::kClamp, Wrap::kMirror}) {
+    const Texture nearest{0, wrap, wrap, true};
+    EXPECT_EQ(lookUpScalar(image, nearest, {0.49f, 0.49f}, 0), 0);
+    EXPECT_EQ(lookUpScalar(image, nearest, {0.51f, 0.49f}, 0), 1);
+    EXPECT_EQ(lookUpScalar(image, nearest, {0.99f, 0.99f}, 0), 3);
+  }
+}
+
+TEST(Texture, DecodesBytes) {
+  Image image{"", 1, 1, 4, true, {0, 128, 255, 128}, {}};
+  const Texture texture{0, Wrap::kRepeat, Wrap::kRepeat, false};
+  const Rgb c = lookUpRgb(image, texture, {0.3f, 0.6f});
+  EXPECT_FLOAT_EQ(c.x, 0);
+  EXPECT_NEAR(c.y, 0.2158605f, 1e-6f);  // IEC 61966-2-1 of 128 / 255
+  EXPECT_FLOAT_EQ(c.z, 1);
+  EXPECT_NEAR(lookUpScalar(image, texture, {0, 0}, 1), 0.2158605f, 1e-6f);
+  EXPECT_NEAR(lookUpScalar(image, texture, {0, 0}, 3), 128 / 255.0f, 1e-6f);  // alpha is never sRGB
+  image.srgb = false;
+  EXPECT_NEAR(lookUpRgb(image, texture, {0, 0}).y, 128 / 255.0f, 1e-6f);
+  for (int i = 0; i < 256; i++) EXPECT_NEAR(linearToSrgb(kByteToLinear[1][i]) * 255, i, 1e-3);
+}
+
+TEST(Texture, GreyStandsForAllColours) {
+  const Texture texture{0, Wrap::kRepeat, Wrap::kRepeat, false};
+  const Image grey{"", 1, 1, 2, false, {}, {0.25f, 0.5f}};
+  EXPECT_EQ(lookUpRgb(grey, texture, {0, 0}), (Rgb{0.25f, 0.25f, 0.25f}));
+}
+
+TEST(Texture, IsDefinedEverywhere) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity(), kNan = std::numeric_limits<float>::quiet_NaN();
+  const float kStrange[] = {kNan,          kInfinity,      -kInfinity,  3e38f, -3e38f, 1e-45f,     -1e-45f,
+                            2147483648.0f, -2147483648.0f, 0.99999994f, 1,     -0.0f,  16777216.0f};
+  for (const auto& [width, height] : {std::pair(1, 1), std::pair(2, 2), std::pair(3, 1), std::pair(65536, 1)}) {
+    const Image image{"", width, height, 1, false, {}, std::vector<float>(size_t(width) * height, 0.5f)};
+    for (const Wrap wrap : {Wrap::kRepeat, Wrap::kClamp, Wrap::kMirror})
+      for (const bool nearest : {false, true})
+        for (const float u : kStrange)
+          for (const float v : kStrange)
+            EXPECT_FLOAT_EQ(lookUpScalar(image, {0, wrap, wrap, nearest}, {u, v}, 0), 0.5f) << u << ' ' << v;
+  }
+}
+
+TEST(Texture, AppliesItsTransform) {
+  Scene scene;
+  scene.images = {ramp()};
+  scene.textures = {{0, Wrap::kClamp, Wrap::kClamp, true}};
+  const TextureUse use{0, 0, {0, 1, 0, 1, 0, 0}};  // u and v exchanged
+  EXPECT_EQ(sampleScalar(scene, use, {0.9f, 0.1f}), 2);
+  EXPECT_EQ(sampleRgb(scene, TextureUse{}, {0, 0}), (Rgb{1, 1, 1}));
+  EXPECT_FLOAT_EQ(evaluate(scene, {{2, 0, 1}, use}, {0.9f, 0.1f}).x, 4);
+  EXPECT_FLOAT_EQ(evaluateAlpha(scene, {0.5f, use}, {0.1f, 0.1f}), 1e-6f);
+}
+
+}  // namespace
+}  // namespace wardmis
