@@ -47,13 +47,18 @@ def gather_geometry(mesh: Any, with_uvs: bool, context: ExportContext) -> Geomet
     vertex_of_corner = compat.corner_vertices(mesh)
     context.check_cancelled()
     if shading == "CORNER" or uv_layer is not None:
-        normals = None if shading == "FACE" else compat.corner_normals(mesh)
+        geometry = Geometry(positions[vertex_of_corner], None, None, corners, slots)
         context.check_cancelled()
-        uvs = compat.uvs(uv_layer) if uv_layer is not None else None
-        geometry = Geometry(positions[vertex_of_corner], normals, uvs, corners, slots)
+        if shading == "CORNER":
+            geometry.normals = compat.corner_normals(mesh)
+        elif shading == "POINT":
+            geometry.normals = compat.vertex_normals(mesh)[vertex_of_corner]
+        if uv_layer is not None:
+            geometry.uvs = compat.uvs(uv_layer)
     else:
-        normals = None if shading == "FACE" else compat.vertex_normals(mesh)
-        geometry = Geometry(positions, normals, None, vertex_of_corner.view(np.uint32)[corners], slots)
+        geometry = Geometry(positions, None, None, vertex_of_corner.view(np.uint32)[corners], slots)
+        if shading == "POINT":
+            geometry.normals = compat.vertex_normals(mesh)
     context.check_cancelled()
     _check_directions(geometry, mesh, context)
     return geometry
