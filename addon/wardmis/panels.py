@@ -35,7 +35,7 @@ INCLUDED = {
 }
 
 
-class _Panel(bpy.types.Panel):
+class _Panel:
     bl_space_type = "PROPERTIES"
     bl_region_type = "WINDOW"
     COMPAT_ENGINES = {ENGINE}
@@ -61,7 +61,7 @@ def _row(column: Any, active: bool) -> Any:
     return row
 
 
-class WARDMIS_RENDER_PT_sampling(_RenderPanel):
+class WARDMIS_RENDER_PT_sampling(_RenderPanel, bpy.types.Panel):
     bl_label = "Sampling"
 
     def draw(self, context: Any) -> None:
@@ -73,7 +73,7 @@ class WARDMIS_RENDER_PT_sampling(_RenderPanel):
         column.prop(settings, "seed")
 
 
-class WARDMIS_RENDER_PT_allocation(_RenderPanel):
+class WARDMIS_RENDER_PT_allocation(_RenderPanel, bpy.types.Panel):
     bl_label = "Allocation"
 
     def draw(self, context: Any) -> None:
@@ -88,7 +88,7 @@ class WARDMIS_RENDER_PT_allocation(_RenderPanel):
         _row(column, settings.allocation != "equal").prop(settings, "min_fraction")
 
 
-class WARDMIS_RENDER_PT_light_paths(_RenderPanel):
+class WARDMIS_RENDER_PT_light_paths(_RenderPanel, bpy.types.Panel):
     bl_label = "Light Paths"
 
     def draw(self, context: Any) -> None:
@@ -97,7 +97,7 @@ class WARDMIS_RENDER_PT_light_paths(_RenderPanel):
         _row(column, settings.integrator == "path").prop(settings, "max_depth")
 
 
-class WARDMIS_RENDER_PT_film(_RenderPanel):
+class WARDMIS_RENDER_PT_film(_RenderPanel, bpy.types.Panel):
     bl_label = "Film"
     bl_options = {"DEFAULT_CLOSED"}
 
@@ -109,7 +109,7 @@ class WARDMIS_RENDER_PT_film(_RenderPanel):
         column.prop(context.scene.render, "film_transparent", text="Transparent")
 
 
-class WARDMIS_RENDER_PT_performance(_RenderPanel):
+class WARDMIS_RENDER_PT_performance(_RenderPanel, bpy.types.Panel):
     bl_label = "Performance"
     bl_options = {"DEFAULT_CLOSED"}
 
@@ -117,7 +117,7 @@ class WARDMIS_RENDER_PT_performance(_RenderPanel):
         self._column().prop(context.scene.wardmis, "threads")
 
 
-class WARDMIS_OBJECT_PT_ray_visibility(_Panel):
+class WARDMIS_OBJECT_PT_ray_visibility(_Panel, bpy.types.Panel):
     bl_label = "Ray Visibility"
     bl_context = "object"
     bl_parent_id = "OBJECT_PT_visibility"
@@ -128,7 +128,7 @@ class WARDMIS_OBJECT_PT_ray_visibility(_Panel):
             column.prop(context.object, f"visible_{kind}", text=kind.title())
 
 
-class WARDMIS_LIGHT_PT_light(_Panel):
+class WARDMIS_LIGHT_PT_light(_Panel, bpy.types.Panel):
     bl_label = "Light"
     bl_context = "data"
 

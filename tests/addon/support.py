@@ -30,8 +30,9 @@ class SceneTest(unittest.TestCase):
         self.scene = bpy.data.scenes.new("Test")
         bpy.context.window.scene = self.scene
         bpy.data.batch_remove(old)
-        for collection in (bpy.data.objects, bpy.data.collections, bpy.data.meshes, bpy.data.materials, bpy.data.worlds):
-            bpy.data.batch_remove(list(collection))
+        names = "objects collections meshes materials worlds lights cameras images curves metaballs node_groups volumes"
+        for name in names.split():
+            bpy.data.batch_remove(list(getattr(bpy.data, name)))
         self.scene.render.engine = "WARDMIS"
         self.camera = self.add("Camera", bpy.data.cameras.new("Camera"))
         self.scene.camera = self.camera

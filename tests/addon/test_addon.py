@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The add-on as a guest in Blender: it comes and goes without a trace, and agrees with its documents."""
+
+from __future__ import annotations
+
+import ast
+import re
+import unittest
+
+import bpy
+import wardmis
+from support import ADDON
+from wardmis import panels, properties
+from wardmis.export import VERSION
+
+COMMAND = (ADDON.parents[1] / "docs" / "command.md").read_text()
+
+
+def traces() -> dict[str, object]:
+    theirs = [p for p in bpy.types.Panel.__subclasses__() if p.__module__ != panels.__name__]
+    return {
+        "classes": sorted(name for name in dir(bpy.types) if "WARDMIS" in name.upper()),
+        "panels": sorted(p.__name__ for p in theirs if "WARDMIS" in getattr(p, "COMPAT_ENGINES", ())),
+        "scene": hasattr(bpy.types.Scene, "wardmis"),
+        "menu": len(bpy.types.TOPBAR_MT_file_export._dyn_ui_initialize()),
+    }
+
+
+class Registration(unittest.TestCase):
+    def test_twice_without_a_trace(self):
+        registered = traces()
+        for _ in range(2):
+            wardmis.unregister()
+            gone = traces()
+            self.assertEqual((gone["classes"], gone["panels"], gone["scene"]), ([], [], False))
+            self.assertEqual(gone["menu"], registered["menu"] - 1)
+            wardmis.register()
+            self.assertEqual(traces(), registered)
+
+    def test_one_version(self):
+        self.assertEqual(".".join(map(str, wardmis.bl_info["version"])), VERSION)
+        self.assertIn(f'version = "{VERSION}"', (ADDON / "blender_manifest.toml").read_text())
+
+    def test_bl_info_is_readable_without_running(self):
+        tree = ast.parse((ADDON / "__init__.py").read_text())
+        values = [node.value for node in tree.body if isinstance(node, ast.Assign) and node.targets[0].id == "bl_info"]
+        self.assertEqual(ast.literal_eval(values[0]), wardmis.bl_info)
+
+
+class Settings(unittest.TestCase):
+    def default(self, name: str):
+        return properties.WARDMIS_PG_scene.bl_rna.properties[name].default
+
+    def test_choices_and_defaults_are_those_of_the_command(self):
+        for option, name, items in (
+            ("--allocation", "allocation", properties.ALLOCATIONS),
+            ("--weights", "weights", properties.WEIGHTS),
+            ("--integrand", "integrand", properties.INTEGRANDS),
+            ("--integrator", "integrator", properties.INTEGRATORS),
+            ("--sampler", "sampler", properties.SAMPLERS),
+        ):
+            line = next(line for line in COMMAND.splitlines() if line.startswith(f"| `{option}`"))
+            words = re.findall(r"`([^`]+)`", line.split("|")[2])
+            self.assertEqual(words[-1], self.default(name), option)
+            self.assertEqual(set(words), {item[0] for item in items}, option)
+
+    def test_numbers_are_those_of_the_command(self):
+        for option, name in (
+            ("--samples-per-hit n", "samples_per_hit"),
+            ("--pilot-spp P", "pilot_samples"),
+            ("--min-fraction A", "min_fraction"),
+            ("--max-depth D", "max_depth"),
+        ):
+            line = next(line for line in COMMAND.splitlines() if line.startswith(f"| `{option}`"))
+            default = float(re.search(r"\(([\d.]+)\)", line.split("|")[2])[1])
+            self.assertAlmostEqual(self.default(name), default, 6, option)
+        self.assertEqual(self.default("samples"), 64)
+
+    def test_every_setting_is_described_and_shown(self):
+        source = (ADDON / "panels.py").read_text()
+        for prop in properties.WARDMIS_PG_scene.bl_rna.properties:
+            if prop.identifier in {"rna_type", "name"}:
+                continue
+            self.assertTrue(prop.description, prop.identifier)
+            # what stops a render is shown by the name of the choice
+            self.assertIn("stop_by" if prop.identifier in {"samples", "seconds"} else f'"{prop.identifier}"', source)
+
+
+class Panels(unittest.TestCase):
+    def test_what_the_engine_reads_can_be_edited(self):
+        shown = {p.__name__ for p in bpy.types.Panel.__subclasses__() if panels.ENGINE in getattr(p, "COMPAT_ENGINES", ())}
+        for name in (
+            "DATA_PT_lens",
+            "DATA_PT_camera_dof",
+            "EEVEE_MATERIAL_PT_surface",
+            "EEVEE_MATERIAL_PT_context_material",
+            "EEVEE_WORLD_PT_surface",
+            "WORLD_PT_context_world",
+            "WARDMIS_LIGHT_PT_light",
+            "RENDER_PT_output",
+            "RENDER_PT_format",
+            "VIEWLAYER_PT_layer",
+        ):
+            self.assertIn(name, shown)
+        self.assertFalse({"MATERIAL_PT_preview", "DATA_PT_preview", "RENDER_PT_freestyle"} & shown)
+
+    def test_settings_of_every_light_exist(self):
+        for kind in ("POINT", "SPOT", "SUN", "AREA"):
+            light = bpy.data.lights.new("Light", kind)
+            for name in panels._light_settings(light):
+                if name not in {"use_temperature", "temperature", "exposure", "normalize", "use_soft_falloff"}:  # later versions'
+                    self.assertTrue(hasattr(light, name), f"{kind}.{name}")
+            bpy.data.lights.remove(light)

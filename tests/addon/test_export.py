@@ -1,0 +1,396 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the depsgraph holds arrives in the plain data: meshes of every kind, instances, materials by slot, visibility."""
+
+from __future__ import annotations
+
+import math
+import tempfile
+import time
+from pathlib import Path
+
+import bpy
+import numpy as np
+import wardmis
+from mathutils import Matrix
+from support import SceneTest
+from wardmis import compat
+from wardmis.export import ExportCancelled, ExportError, export_depsgraph
+from wardmis.export.context import ExportContext
+from wardmis.export.model import SceneData
+
+
+def triangles_of(scene: SceneData, mesh: int) -> int:
+    return sum(len(p.triangles) for p in scene.meshes[mesh].primitives)
+
+
+def textured_material(name: str = "Textured"):
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    tree = material.node_tree
+    texture = tree.nodes.new("ShaderNodeTexImage")
+    texture.image = bpy.data.images.new(name, 4, 4)
+    principled = next(n for n in tree.nodes if n.bl_idname == "ShaderNodeBsdfPrincipled")
+    tree.links.new(texture.outputs["Color"], principled.inputs["Base Color"])
+    return material
+
+
+class Meshes(SceneTest):
+    def test_flat_mesh_needs_positions_alone(self):
+        self.add_quad()
+        mesh = self.gather().meshes[0]
+        self.assertEqual((len(mesh.positions), mesh.normals, mesh.uvs), (4, None, None))
+        corners = mesh.positions[mesh.primitives[0].triangles]
+        areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        np.testing.assert_allclose(areas.sum(axis=0), (0, 0, 8))  # the right way round
+
+    def test_smooth_mesh_has_a_normal_for_each_vertex(self):
+        mesh = self.add_mesh("Roof", [(-1, 0, 0), (0, 0, 1), (1, 0, 0), (-1, 1, 0), (0, 1, 1), (1, 1, 0)], [(0, 1, 4, 3), (1, 2, 5, 4)]).data
+        mesh.polygons.foreach_set("use_smooth", [True, True])
+        exported = self.gather().meshes[0]
+        self.assertEqual(len(exported.positions), 6)
+        np.testing.assert_allclose(abs(exported.normals[1]), (0, 0, 1), atol=1e-6)
+
+    def test_flat_and_smooth_faces_together_have_a_normal_for_each_corner(self):
+        mesh = self.add_mesh("Roof", [(-1, 0, 0), (0, 0, 1), (1, 0, 0), (-1, 1, 0), (0, 1, 1), (1, 1, 0)], [(0, 1, 4, 3), (1, 2, 5, 4)]).data
+        mesh.polygons.foreach_set("use_smooth", [True, False])
+        exported = self.gather().meshes[0]
+        self.assertEqual(len(exported.positions), 8)
+        flat = [n for p, n in zip(exported.positions, exported.normals) if p[0] > 0]
+        np.testing.assert_allclose(np.abs(flat), np.full((2, 3), (math.sqrt(0.5), 0, math.sqrt(0.5))), atol=1e-4)
+
+    def test_uvs_are_exported_only_for_a_material_that_needs_them(self):
+        quad = self.add_quad()
+        layer = quad.data.uv_layers.new(name="UV")
+        for loop, uv in zip(layer.data, ((0, 0), (1, 0), (1, 0.5), (0, 0.5))):
+            loop.uv = uv
+        self.assertIsNone(self.gather().meshes[0].uvs)
+        quad.data.materials.append(textured_material())
+        mesh = self.gather().meshes[0]
+        by_place = {tuple(p[:2]): tuple(uv) for p, uv in zip(mesh.positions.tolist(), mesh.uvs.tolist())}
+        self.assertEqual(by_place[(1.0, 1.0)], (1.0, 0.5))
+
+    def test_every_kind_of_object_with_a_surface(self):
+        curve = bpy.data.curves.new("Curve", "CURVE")
+        curve.dimensions = "3D"
+        spline = curve.splines.new("POLY")
+        spline.points.add(1)
+        spline.points[1].co = (1, 0, 0, 1)
+        curve.bevel_depth = 0.1
+        text = bpy.data.curves.new("Text", "FONT")
+        text.body = "W"
+        ball = bpy.data.metaballs.new("Ball")
+        ball.elements.new()
+        for name, data in (("Curve", curve), ("Text", text), ("Ball", ball)):
+            self.add(name, data)
+        bpy.ops.surface.primitive_nurbs_surface_sphere_add()
+        bpy.context.object.name = "Surface"
+        scene = self.gather()
+        self.assertEqual({i.name for i in scene.instances}, {"Curve", "Text", "Ball", "Surface"})
+        self.assertEqual(len(scene.instances), 4)
+        for instance in scene.instances:
+            self.assertGreater(triangles_of(scene, instance.mesh), 0, instance.name)
+        self.assertEqual(scene.notes, [])
+
+    def test_what_cannot_be_shown_is_noted(self):
+        self.add("Cloud", bpy.data.volumes.new("Cloud"))
+        quad = self.add_quad("Furry")
+        quad.modifiers.new("Hair", "PARTICLE_SYSTEM")
+        quad.particle_systems[0].settings.type = "HAIR"
+        notes = "\n".join(self.gather().notes)
+        self.assertIn("object 'Cloud': volume objects are not supported", notes)
+        self.assertIn("object 'Furry': the hair strands of", notes)
+
+    def test_mesh_without_faces_is_nothing(self):
+        self.add_mesh("Edge", [(0, 0, 0), (1, 0, 0)], [])
+        self.assertEqual(self.gather().instances, [])
+
+    def test_vertex_that_is_not_finite_names_the_object(self):
+        quad = self.add_quad("Broken")
+        quad.data.vertices[2].co.y = math.nan
+        quad.data.update()
+        with self.assertRaisesRegex(ExportError, "object 'Broken': vertex 2 of mesh 'Broken' is at .*nan.* not finite"):
+            self.gather()
+
+    def test_normals_of_every_kind_agree_with_blenders_corners(self):
+        bpy.ops.mesh.primitive_monkey_add()
+        mesh = bpy.context.object.data
+        mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
+        mesh.update()
+        exported = self.gather().meshes[0]
+        expected = compat.corner_normals(mesh)
+        corners = compat.triangle_corners(mesh)
+        np.testing.assert_allclose(exported.normals[exported.primitives[0].triangles], expected[corners], atol=1e-4)
+
+    def test_raw_arrays_equal_those_of_foreach_get(self):
+        bpy.ops.mesh.primitive_monkey_add()
+        mesh = bpy.context.object.data
+        mesh.calc_loop_triangles()
+        slow = np.empty(3 * len(mesh.loop_triangles), np.int32)
+        mesh.loop_triangles.foreach_get("loops", slow)
+        np.testing.assert_array_equal(compat.triangle_corners(mesh), slow.reshape(-1, 3))
+        vertices = np.empty(len(mesh.loops), np.int32)
+        mesh.loops.foreach_get("vertex_index", vertices)
+        np.testing.assert_array_equal(compat.corner_vertices(mesh), vertices)
+
+    def test_two_million_triangles_in_less_than_a_second(self):
+        n = 1000
+        mesh = bpy.data.meshes.new("Large")
+        x, y = np.meshgrid(np.linspace(-1, 1, n + 1), np.linspace(-1, 1, n + 1))
+        mesh.vertices.add((n + 1) ** 2)
+        mesh.vertices.foreach_set("co", np.stack([x, y, 0.1 * np.sin(9 * x)], -1).astype(np.float32).reshape(-1))
+        corner = np.arange(n * n) + np.arange(n * n) // n
+        mesh.loops.add(4 * n * n)
+        mesh.loops.foreach_set("vertex_index", np.stack([corner, corner + 1, corner + n + 2, corner + n + 1], -1).astype(np.int32).reshape(-1))
+        mesh.polygons.add(n * n)
+        mesh.polygons.foreach_set("loop_start", np.arange(0, 4 * n * n, 4, dtype=np.int32))
+        if compat.VERSION < (4, 1, 0):
+            mesh.polygons.foreach_set("loop_total", np.full(n * n, 4, np.int32))
+        mesh.polygons.foreach_set("use_smooth", np.full(n * n, True))
+        mesh.update()
+        self.add("Large", mesh)
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        best = math.inf
+        with tempfile.TemporaryDirectory() as folder:
+            for _ in range(3):
+                start = time.perf_counter()
+                export_depsgraph(depsgraph, Path(folder) / "large.glb")
+                best = min(best, time.perf_counter() - start)
+            self.assertGreater((Path(folder) / "large.glb").stat().st_size, 2_000_000 * 12 + 1_000_000 * 24)
+        print(f"[{best:.2f} s]", end=" ")
+        self.assertLess(best, 1.0)
+
+
+class Materials(SceneTest):
+    def test_slots_become_primitives_that_share_their_vertices(self):
+        quads = self.add_mesh("Two", [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (2, 0, 0), (2, 1, 0)], [(0, 1, 2, 3), (1, 4, 5, 2)])
+        for name in ("Left", "Unused", "Right"):
+            quads.data.materials.append(bpy.data.materials.new(name))
+        quads.data.polygons[1].material_index = 2
+        scene = self.gather()
+        names = [scene.materials[p.material].name for p in scene.meshes[0].primitives]
+        self.assertEqual(names, ["Left", "Right"])
+        self.assertEqual([len(p.triangles) for p in scene.meshes[0].primitives], [2, 2])
+
+    def test_face_beyond_the_slots_has_the_last_material(self):
+        quad = self.add_quad()
+        quad.data.materials.append(bpy.data.materials.new("Only"))
+        quad.data.polygons[0].material_index = 7
+        scene = self.gather()
+        self.assertEqual([scene.materials[p.material].name for p in scene.meshes[0].primitives], ["Only"])
+
+    def test_material_of_the_object_goes_before_that_of_the_mesh(self):
+        quad = self.add_quad("One")
+        quad.data.materials.append(bpy.data.materials.new("Mesh's"))
+        other = self.add("Two", quad.data)
+        other.material_slots[0].link = "OBJECT"
+        other.material_slots[0].material = bpy.data.materials.new("Object's")
+        scene = self.gather()
+        self.assertEqual(len(scene.meshes), 2)
+        self.assertIs(scene.meshes[0].positions, scene.meshes[1].positions, "the vertices are not shared")
+        used = {i.name: scene.materials[scene.meshes[i.mesh].primitives[0].material].name for i in scene.instances}
+        self.assertEqual(used, {"One": "Mesh's", "Two": "Object's"})
+
+    def test_no_material_and_empty_slots_are_diffuse_grey(self):
+        self.add_quad("None")
+        self.add_quad("Empty").data.materials.append(None)
+        scene = self.gather()
+        self.assertEqual([m.diffuse.value for m in scene.materials], [(0.8, 0.8, 0.8)])
+
+    def test_override_of_the_view_layer(self):
+        self.add_quad().data.materials.append(bpy.data.materials.new("Own"))
+        self.scene.view_layers[0].material_override = bpy.data.materials.new("Override")
+        self.assertEqual([m.name for m in self.gather().materials], ["Override"])
+
+    def test_materials_that_no_mesh_uses_are_left_out(self):
+        bpy.data.materials.new("Unused").use_fake_user = True
+        self.add_quad().data.materials.append(bpy.data.materials.new("Used"))
+        self.assertEqual([m.name for m in self.gather().materials], ["Used"])
+
+
+class Instances(SceneTest):
+    def test_objects_that_share_a_mesh_are_instances(self):
+        quad = self.add_quad()
+        for k in range(3):
+            self.add(f"Copy{k}", quad.data).location.x = k
+        scene = self.gather()
+        self.assertEqual((len(scene.meshes), len(scene.instances)), (1, 4))
+
+    def test_modified_copies_are_meshes_of_their_own(self):
+        quad = self.add_quad()
+        self.add("Modified", quad.data).modifiers.new("Subdivide", "SUBSURF").levels = 2
+        scene = self.gather()
+        self.assertEqual(sorted(triangles_of(scene, m) for m in range(len(scene.meshes))), [2, 32])
+
+    def test_collection_instances(self):
+        inner = bpy.data.collections.new("Inner")
+        quad = self.add("Quad", self.add_quad("Outside").data, inner)
+        quad.location = (0, 0, 1)
+        bpy.data.objects.remove(bpy.data.objects["Outside"])
+        light = self.add("Lamp", bpy.data.lights.new("Lamp", "POINT"), inner)
+        light.data.energy = 10
+        for x in (5, 7):
+            empty = self.add(f"Empty{x}", None)
+            empty.instance_type, empty.instance_collection = "COLLECTION", inner
+            empty.location.x = x
+        scene = self.gather()
+        self.assertEqual(sorted(tuple(i.matrix[:3, 3]) for i in scene.instances), [(5, 0, 1), (7, 0, 1)])
+        self.assertEqual((len(scene.meshes), len(scene.lights)), (1, 2))
+
+    def test_text_in_a_collection_instance(self):
+        inner = bpy.data.collections.new("Inner")
+        self.add("Text", bpy.data.curves.new("Text", "FONT"), inner).data.body = "W"
+        for x in (5, 7):
+            empty = self.add(f"Empty{x}", None)
+            empty.instance_type, empty.instance_collection = "COLLECTION", inner
+            empty.location.x = x
+        scene = self.gather()
+        self.assertEqual((len(scene.meshes), len(scene.instances)), (1, 2))
+
+    def test_particles_that_are_objects(self):
+        emitter = self.add_quad("Emitter")
+        emitter.modifiers.new("Particles", "PARTICLE_SYSTEM")
+        settings = emitter.particle_systems[0].settings
+        settings.count, settings.frame_start, settings.frame_end, settings.lifetime = 20, 1, 1, 50
+        settings.render_type, settings.instance_object = "OBJECT", self.add_mesh("Leaf", [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
+        emitter.show_instancer_for_viewport = False
+        self.scene.frame_set(2)
+        scene = self.gather()
+        counts = {scene.meshes[k].name: sum(i.mesh == k for i in scene.instances) for k in range(len(scene.meshes))}
+        self.assertEqual(counts, {"Leaf": 21})
+
+    def test_instances_of_geometry_nodes(self):
+        points = self.add_mesh("Points", [(0, 0, 0), (1, 0, 0), (2, 0, 0)], [])
+        quad = self.add_quad()
+        tree = bpy.data.node_groups.new("Instances", "GeometryNodeTree")
+        compat.add_group_socket(tree, "Geometry", "NodeSocketGeometry", "INPUT")
+        compat.add_group_socket(tree, "Geometry", "NodeSocketGeometry", "OUTPUT")
+        given, made, instance, info = (
+            tree.nodes.new(kind) for kind in ("NodeGroupInput", "NodeGroupOutput", "GeometryNodeInstanceOnPoints", "GeometryNodeObjectInfo")
+        )
+        info.inputs["Object"].default_value = quad
+        tree.links.new(given.outputs[0], instance.inputs["Points"])
+        tree.links.new(info.outputs["Geometry"], instance.inputs["Instance"])
+        tree.links.new(instance.outputs[0], made.inputs[0])
+        points.modifiers.new("Nodes", "NODES").node_group = tree
+        quad.hide_viewport = True
+        scene = self.gather()
+        self.assertEqual((len(scene.meshes), len(scene.instances)), (1, 3))
+        self.assertEqual(sorted(i.matrix[0, 3] for i in scene.instances), [0, 1, 2])
+
+    def test_ten_thousand_instances_are_quick(self):
+        quad = self.add_quad()
+        points = self.add_mesh("Points", np.random.default_rng(0).random((10_000, 3)).tolist(), [])
+        points.instance_type = "VERTS"
+        quad.parent = points
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        start = time.perf_counter()
+        with tempfile.TemporaryDirectory() as folder:
+            export_depsgraph(depsgraph, Path(folder) / "many.glb")
+        seconds = time.perf_counter() - start
+        print(f"[{seconds:.2f} s]", end=" ")
+        self.assertLess(seconds, 1.0)
+
+    def test_transform_that_is_not_finite(self):
+        self.add_quad("Lost").location.x = math.nan
+        with self.assertRaisesRegex(ExportError, "object 'Lost': its transform is not finite"):
+            self.gather()
+
+
+class Visibility(SceneTest):
+    def test_flags_of_objects_and_their_instancers(self):
+        quad = self.add_quad()
+        quad.visible_camera = quad.visible_glossy = False
+        inner = bpy.data.collections.new("Inner")
+        self.add("Inside", quad.data, inner).visible_shadow = False
+        empty = self.add("Empty", None)
+        empty.instance_type, empty.instance_collection = "COLLECTION", inner
+        empty.visible_diffuse = False
+        hidden = {i.name: set(i.hidden_from) for i in self.gather().instances}
+        self.assertEqual(hidden, {"Quad": {"camera", "glossy"}, "Inside": {"diffuse", "shadow"}})
+
+    def test_object_that_nothing_sees_is_left_out(self):
+        quad = self.add_quad()
+        quad.visible_camera = quad.visible_glossy = quad.visible_diffuse = quad.visible_shadow = False
+        self.assertEqual(self.gather().instances, [])
+
+    def test_indirect_only_and_holdout_collections(self):
+        for name in ("Indirect", "Holdout"):
+            collection = bpy.data.collections.new(name)
+            self.scene.collection.children.link(collection)
+            self.add(name, self.add_quad(f"Mesh of {name}").data, collection)
+        layers = self.scene.view_layers[0].layer_collection.children
+        layers["Indirect"].indirect_only = layers["Holdout"].holdout = True
+        scene = self.gather()
+        self.assertEqual({i.name: set(i.hidden_from) for i in scene.instances}["Indirect"], {"camera"})
+        self.assertEqual(scene.notes, ["object 'Holdout': holdouts are not supported; it is rendered as any other object"])
+
+    def test_motion_blur_is_noted(self):
+        self.scene.render.use_motion_blur = True
+        self.assertIn("motion blur is not supported", self.gather().notes[0])
+
+
+class AsRendered(SceneTest):
+    """The export without a depsgraph sees the scene as a render does, and leaves no trace in it."""
+
+    def test_levels_and_visibility_of_the_render(self):
+        from support import read_glb
+
+        quad = self.add_quad()
+        modifier = quad.modifiers.new("Subdivide", "SUBSURF")
+        modifier.levels, modifier.render_levels = 1, 3
+        self.add_quad("Hidden").hide_render = True
+        self.scene.render.engine = "CYCLES"
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "scene.glb"
+            wardmis.export_scene(path)
+            document, _ = read_glb(path)
+            self.assertEqual(list(Path(folder).iterdir()), [path])
+        self.assertEqual([m["name"] for m in document["meshes"]], ["Quad"])
+        indices = document["meshes"][0]["primitives"][0]["indices"]
+        self.assertEqual(document["accessors"][indices]["count"], 3 * 2 * 4**3)
+        self.assertEqual(self.scene.render.engine, "CYCLES")
+
+    def test_operator_of_the_menu(self):
+        self.add_quad()
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "scene.glb"
+            self.assertEqual(bpy.ops.wardmis.export(filepath=str(path)), {"FINISHED"})
+            self.assertTrue(path.is_file())
+            with self.assertRaisesRegex(RuntimeError, "the folder .* does not exist"):
+                bpy.ops.wardmis.export(filepath=str(Path(folder) / "none" / "scene.glb"))
+
+    def test_failure_is_told(self):
+        self.scene.camera.data.type = "PANO"
+        with tempfile.TemporaryDirectory() as folder:
+            with self.assertRaisesRegex(RuntimeError, "panoramic"):
+                wardmis.export_scene(Path(folder) / "scene.glb")
+            self.assertEqual(list(Path(folder).iterdir()), [])
+
+
+class Stopping(SceneTest):
+    def test_export_stops_and_leaves_nothing(self):
+        quad = self.add_quad()
+        for _ in range(100):
+            self.add("Copy", quad.data)
+        with tempfile.TemporaryDirectory() as folder:
+            with self.assertRaises(ExportCancelled):
+                export_depsgraph(bpy.context.evaluated_depsgraph_get(), Path(folder) / "scene.glb", cancelled=lambda: True)
+            self.assertEqual(list(Path(folder).iterdir()), [])
+
+    def test_question_is_asked_often_enough_and_not_too_often(self):
+        asked = []
+        context = ExportContext(None, lambda: asked.append(time.monotonic()))
+        end = time.monotonic() + 0.45
+        while time.monotonic() < end:
+            context.check_cancelled()
+        self.assertIn(len(asked), (4, 5))
+
+
+class Matrices(SceneTest):
+    def test_matrix_of_a_parented_and_scaled_object(self):
+        parent, quad = self.add("Parent", None), self.add_quad()
+        parent.location, parent.rotation_euler, parent.scale = (1, 2, 3), (0.1, 0.2, 0.3), (2, 2, 2)
+        quad.parent, quad.location, quad.scale = parent, (0, 1, 0), (1, -3, 1)
+        bpy.context.view_layer.update()
+        expected = Matrix.LocRotScale(parent.location, parent.rotation_euler, parent.scale) @ Matrix.LocRotScale(quad.location, None, quad.scale)
+        np.testing.assert_allclose(self.gather().instances[0].matrix, np.array(expected), rtol=1e-5, atol=1e-6)

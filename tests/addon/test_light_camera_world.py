@@ -1,0 +1,278 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Lights in radiometric units, the camera's view plane, film and world."""
+
+from __future__ import annotations
+
+import itertools
+import math
+
+import bpy
+import numpy as np
+from mathutils import Vector
+from support import SceneTest
+from wardmis import compat
+from wardmis.export import ExportError
+from wardmis.export.camera import full_resolution, view_plane
+
+NEW = compat.LIGHTS_OF_4_0
+
+
+class Lights(SceneTest):
+    def light(self, kind: str, **settings):
+        data = bpy.data.lights.new("Light", kind)
+        data.energy = 100
+        for name, value in settings.items():
+            setattr(data, name, value)
+        return self.add("Light", data)
+
+    def only(self):
+        scene = self.gather()
+        self.assertEqual(len(scene.lights), 1, scene.notes)
+        return scene.lights[0]
+
+    def test_area_lights_give_their_power(self):
+        for shape, size, area in (
+            ("SQUARE", (2, 9), 4),
+            ("RECTANGLE", (2, 3), 6),
+            ("DISK", (2, 9), math.pi),
+            ("ELLIPSE", (2, 3), 1.5 * math.pi),
+        ):
+            with self.subTest(shape):
+                obj = self.light("AREA", shape=shape, size=size[0], size_y=size[1])
+                light = self.only()
+                self.assertAlmostEqual(light.emission, 100 / ((math.pi if NEW else 4) * area), 4)
+                self.assertEqual(light.shape, "ellipse" if shape in {"DISK", "ELLIPSE"} else "rectangle")
+                self.assertAlmostEqual(light.spread, math.pi, 5)
+                bpy.data.objects.remove(obj)
+
+    def test_scale_makes_an_area_light_larger_and_weaker(self):
+        self.light("AREA", size=1).scale = (2, 5, 1)
+        self.assertAlmostEqual(self.only().emission, 10 / (math.pi if NEW else 4), 5)
+
+    def test_area_light_without_area_is_noted(self):
+        self.light("AREA", size=1).scale = (0, 1, 1)
+        scene = self.gather()
+        self.assertEqual(scene.lights, [])
+        self.assertIn("light 'Light': its area is zero", scene.notes[0])
+
+    def test_point_light(self):
+        self.light("POINT", shadow_soft_size=0.5, color=(1, 0.5, 0.25))
+        light = self.only()
+        self.assertAlmostEqual(light.emission, 100 / (4 * math.pi), 5)
+        self.assertEqual((light.radius, light.color, light.facing), (0.5, (1, 0.5, 0.25), True))
+
+    def test_true_spheres_where_blender_has_them(self):
+        obj = self.light("POINT", shadow_soft_size=0.5)
+        if hasattr(obj.data, "use_soft_falloff"):
+            obj.data.use_soft_falloff = False
+            self.assertFalse(self.only().facing)
+        else:
+            self.assertTrue(self.only().facing)
+
+    def test_spot_light(self):
+        self.light("SPOT", spot_size=1.25, spot_blend=0.25, shadow_soft_size=0)
+        light = self.only()
+        self.assertAlmostEqual(light.emission, 100 / (4 * math.pi), 5)
+        self.assertEqual((light.angle, light.blend, light.cosine), (1.25, 0.25, not NEW))
+
+    def test_sun(self):
+        for angle in (0, 0.01, 1.0, 3.0):
+            with self.subTest(angle):
+                obj = self.light("SUN", angle=angle)
+                obj.data.energy = 2
+                # what a disk of Cycles' radiance gives a surface that faces it, by its own formula
+                h = angle / 2
+                expected = 2 if NEW or h == 0 else 2 * 2 * (1 / math.cos(h) - 1) / math.tan(h) ** 2
+                self.assertAlmostEqual(self.only().emission, expected, 4)
+                bpy.data.objects.remove(obj)
+
+    def test_exposure_temperature_and_normalization(self):
+        obj = self.light("AREA", size=2, shape="SQUARE")
+        if not hasattr(obj.data, "normalize"):
+            self.skipTest("this Blender has none of them")
+        obj.data.exposure, obj.data.normalize = 3, False
+        self.assertAlmostEqual(self.only().emission, 800 / math.pi, 3)
+        obj.data.use_temperature, obj.data.temperature = True, 3000
+        red, green, blue = self.only().color
+        self.assertGreater(red, green)
+        self.assertGreater(green, blue)
+
+    def test_node_tree_multiplies(self):
+        data = self.light("POINT").data
+        data.use_nodes = True
+        emission = next(n for n in data.node_tree.nodes if n.bl_idname == "ShaderNodeEmission")
+        emission.inputs["Color"].default_value = (0.5, 1, 1, 1)
+        emission.inputs["Strength"].default_value = 4
+        self.assertEqual(self.only().color, (2, 4, 4))
+        texture = data.node_tree.nodes.new("ShaderNodeTexChecker")
+        data.node_tree.links.new(texture.outputs["Color"], emission.inputs["Color"])
+        scene = self.gather()
+        self.assertEqual(scene.lights[0].color, (4, 0, 4))
+        self.assertIn("light 'Light': node 'Checker Texture'", scene.notes[0])
+
+    def test_lights_that_give_no_light_are_left_out(self):
+        self.light("POINT").data.energy = 0
+        self.light("POINT").data.color = (0, 0, 0)
+        portal = self.light("AREA").data
+        portal.cycles.is_portal = True
+        scene = self.gather()
+        self.assertEqual((scene.lights, scene.notes), ([], []))
+
+    def test_negative_light_is_noted(self):
+        self.light("POINT").data.energy = -5
+        self.assertIn("negative light is not supported", self.gather().notes[0])
+
+    def test_shadow_and_visibility(self):
+        obj = self.light("POINT")
+        obj.visible_camera, obj.visible_glossy = False, False
+        if hasattr(obj.data.cycles, "cast_shadow"):
+            obj.data.cycles.cast_shadow = False
+        else:
+            obj.data.use_shadow = False
+        light = self.only()
+        self.assertFalse(light.shadow)
+        self.assertEqual(light.hidden_from, {"camera", "glossy"})
+
+
+class Camera(SceneTest):
+    def test_view_plane_is_that_of_blenders_own_matrix(self):
+        render, data = self.scene.render, self.camera.data
+        combinations = itertools.product(
+            ("PERSP", "ORTHO"), ("AUTO", "HORIZONTAL", "VERTICAL"), ((160, 90), (90, 160), (100, 100)), ((1, 1), (2, 1), (1, 1.5)), (0, 0.3)
+        )
+        for kind, fit, (width, height), (ax, ay), shift in combinations:
+            with self.subTest(f"{kind} {fit} {width}x{height} {ax}:{ay} {shift}"):
+                data.type, data.sensor_fit, data.sensor_width, data.sensor_height = kind, fit, 36, 20
+                data.lens, data.ortho_scale, data.shift_x, data.shift_y = 40, 5, shift, -shift / 2
+                render.resolution_x, render.resolution_y, render.pixel_aspect_x, render.pixel_aspect_y = width, height, ax, ay
+                left, right, bottom, top = view_plane(data, render, full_resolution(render))
+                depsgraph = bpy.context.evaluated_depsgraph_get()
+                matrix = self.camera.calc_matrix_camera(depsgraph, x=width, y=height, scale_x=ax, scale_y=ay)
+                for x, sx in ((left, -1), (right, 1)):
+                    for y, sy in ((bottom, -1), (top, 1)):
+                        point = matrix @ Vector((x, y, -1, 1))
+                        np.testing.assert_allclose((point.x / point.w, point.y / point.w), (sx, sy), atol=1e-5)
+
+    def test_scale_of_the_camera_does_not_count(self):
+        self.camera.scale = (2, 3, 4)
+        self.camera.rotation_euler = (1, 0.5, 0.2)
+        matrix = self.gather().camera.matrix
+        np.testing.assert_allclose(matrix[:3, :3].T @ matrix[:3, :3], np.eye(3), atol=1e-6)
+
+    def test_depth_of_field(self):
+        dof = self.camera.data.dof
+        dof.use_dof, dof.focus_distance, dof.aperture_fstop, dof.aperture_blades = True, 3, 1.4, 5
+        self.camera.data.lens = 35
+        camera = self.gather().camera
+        self.assertAlmostEqual(camera.lens_radius, 0.035 / 2.8, 6)
+        self.assertEqual((camera.focus_distance, camera.blades), (3, 5))
+        focus = self.add("Focus", None)
+        focus.location = (2, 0, -7)
+        dof.focus_object, dof.aperture_blades, self.camera.data.type = focus, 2, "ORTHO"
+        camera = self.gather().camera
+        self.assertAlmostEqual(camera.focus_distance, 7, 5)
+        self.assertAlmostEqual(camera.lens_radius, 1 / 2.8, 6)
+        self.assertEqual(camera.blades, 0)
+
+    def test_no_camera(self):
+        self.scene.camera = None
+        with self.assertRaisesRegex(ExportError, "no active camera"):
+            self.gather()
+
+    def test_active_camera_that_is_no_camera(self):
+        self.scene.camera = self.add("Empty", None)
+        with self.assertRaisesRegex(ExportError, "object 'Empty' is the active camera, but is no camera"):
+            self.gather()
+
+
+class Film(SceneTest):
+    def test_settings(self):
+        render, settings = self.scene.render, self.scene.wardmis
+        film = self.gather().film
+        self.assertEqual((film.filter_type, film.filter_width, film.exposure, film.transparent), ("blackman-harris", 1.5, 1, False))
+        render.resolution_x, render.resolution_y, render.resolution_percentage = 333, 101, 50
+        render.film_transparent = True
+        settings.filter_type, settings.film_exposure = "box", 2
+        film = self.gather().film
+        self.assertEqual((film.resolution, film.border), ((166, 50), (0, 0, 166, 50)))
+        self.assertEqual((film.filter_type, film.exposure, film.transparent), ("box", 2, True))
+
+    def test_border_without_pixels(self):
+        render = self.scene.render
+        render.use_border, render.border_min_x, render.border_max_x = True, 0.5, 0.5001
+        with self.assertRaisesRegex(ExportError, "the render region holds no pixel"):
+            self.gather()
+
+
+class World(SceneTest):
+    def setUp(self) -> None:
+        super().setUp()
+        self.world = self.scene.world = bpy.data.worlds.new("World")
+        self.world.use_nodes = True
+        self.tree = self.world.node_tree
+        self.background = next(n for n in self.tree.nodes if n.bl_idname == "ShaderNodeBackground")
+        self.background.inputs["Color"].default_value = (0.1, 0.2, 0.4, 1)
+        self.background.inputs["Strength"].default_value = 2
+
+    def test_no_world_is_black(self):
+        self.scene.world = None
+        self.assertEqual(self.gather().world.radiance, (0, 0, 0))
+
+    def test_background(self):
+        np.testing.assert_allclose(self.gather().world.radiance, (0.2, 0.4, 0.8))
+
+    def test_color_without_nodes(self):
+        if compat.VERSION >= (5, 0, 0):
+            self.skipTest("this Blender's worlds always have nodes")
+        self.world.use_nodes, self.world.color = False, (0.3, 0.2, 0.1)
+        np.testing.assert_allclose(self.gather().world.radiance, (0.3, 0.2, 0.1))
+
+    def environment(self, mapping_type: str | None, rotation=(0, 0, 0), scale=(1, 1, 1)):
+        node = self.tree.nodes.new("ShaderNodeTexEnvironment")
+        node.image = bpy.data.images.new("Sky", 8, 4, float_buffer=True)
+        self.tree.links.new(node.outputs["Color"], self.background.inputs["Color"])
+        if mapping_type:
+            coordinates, mapping = self.tree.nodes.new("ShaderNodeTexCoord"), self.tree.nodes.new("ShaderNodeMapping")
+            mapping.vector_type = mapping_type
+            mapping.inputs["Rotation"].default_value, mapping.inputs["Scale"].default_value = rotation, scale
+            self.tree.links.new(coordinates.outputs["Generated"], mapping.inputs["Vector"])
+            self.tree.links.new(mapping.outputs["Vector"], node.inputs["Vector"])
+        return node
+
+    def test_environment_texture(self):
+        self.environment(None)
+        scene = self.gather()
+        self.assertEqual(scene.world.radiance, (2, 2, 2))
+        self.assertEqual(scene.images[scene.textures[scene.world.texture].image].name, "Sky")
+        np.testing.assert_array_equal(scene.world.matrix, np.eye(3))
+        self.assertEqual(scene.notes, [])
+
+    def test_mapping_turns_the_environment(self):
+        quarter = (0, 0, math.pi / 2)
+        for kind, turned in (("POINT", (0, 1, 0)), ("VECTOR", (0, 1, 0)), ("NORMAL", (0, 1, 0)), ("TEXTURE", (0, -1, 0))):
+            with self.subTest(kind):
+                self.environment(kind, quarter)
+                scene = self.gather()
+                np.testing.assert_allclose(scene.world.matrix @ (1, 0, 0), turned, atol=1e-6)
+                self.assertEqual(scene.notes, [])
+
+    def test_mapping_mirrors_the_environment(self):
+        self.environment("POINT", scale=(-1, 1, 1))
+        np.testing.assert_allclose(self.gather().world.matrix, np.diag((-1, 1, 1)), atol=1e-6)
+
+    def test_what_is_not_understood_is_noted(self):
+        self.environment("POINT", scale=(1, 2, 1)).projection = "MIRROR_BALL"
+        notes = "\n".join(self.gather().notes)
+        self.assertIn("the projection Mirror_Ball is not supported", notes)
+        self.assertIn("only the rotation of node 'Mapping' is used", notes)
+
+    def test_missing_image_and_unknown_color_are_magenta(self):
+        self.environment(None).image = None
+        scene = self.gather()
+        self.assertEqual(scene.world.radiance, (2, 0, 2))
+        self.assertIn("world 'World': node 'Environment Texture' has no image", scene.notes[0])
+        sky = self.tree.nodes.new("ShaderNodeTexSky")
+        self.tree.links.new(sky.outputs["Color"], self.background.inputs["Color"])
+        scene = self.gather()
+        self.assertEqual(scene.world.radiance, (2, 0, 2))
+        self.assertIn("node 'Sky Texture'", scene.notes[0])
