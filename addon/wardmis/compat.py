@@ -19,7 +19,7 @@ LIGHTS_OF_4_0 = VERSION >= (4, 0, 0)
 
 
 def _foreach(collection: Any, attribute: str, width: int, dtype: type) -> np.ndarray:
-    out = np.empty(len(collection) * width, dtype)
+    out: np.ndarray = np.empty(len(collection) * width, dtype)
     collection.foreach_get(attribute, out)
     return out.reshape(-1, width) if width > 1 else out
 
@@ -37,11 +37,12 @@ def _raw_or_foreach(collection: Any, attribute: str, width: int, dtype: type) ->
     in_a_row = collection[count - 1].as_pointer() - first == stride * (count - 1)
     if not in_a_row or stride % 4 or not 4 * width <= stride <= 16:
         return _foreach(collection, attribute, width, dtype)
-    words = np.ctypeslib.as_array((ctypes.c_uint32 * (count * stride // 4)).from_address(first)).view(dtype).reshape(count, -1)
+    words: np.ndarray = np.ctypeslib.as_array((ctypes.c_uint32 * (count * stride // 4)).from_address(first))
+    words = words.view(dtype).reshape(count, -1)
     for i in (0, 1, count // 3, count // 2, count - 1):
         if not np.array_equal(words[i, :width], np.array(getattr(collection[i], attribute), dtype, ndmin=1)):
             return _foreach(collection, attribute, width, dtype)
-    copy = words[:, :width].copy()  # Blender owns the array
+    copy: np.ndarray = words[:, :width].copy()  # Blender owns the array
     return copy if width > 1 else copy.reshape(-1)
 
 
@@ -117,7 +118,7 @@ def uvs(layer: Any) -> np.ndarray:
 
 def light_casts_shadow(light: Any) -> bool:
     """Cycles had a setting of its own until 4.2."""
-    cycles = getattr(light, "cycles", None)
+    cycles: Any = getattr(light, "cycles", None)
     return bool(cycles.cast_shadow if hasattr(cycles, "cast_shadow") else light.use_shadow)
 
 
@@ -169,10 +170,17 @@ def add_shader_menu() -> Any:
 
 
 # The Principled BSDF was renamed and rebuilt in 4.0; the extras are those of its inputs that are left out.
+PRINCIPLED_EXTRAS: tuple[str, ...]
 if VERSION >= (4, 0, 0):
     PRINCIPLED_SPECULAR, PRINCIPLED_SPECULAR_OF_IOR = "Specular IOR Level", True
     PRINCIPLED_EMISSION = "Emission Color"
-    PRINCIPLED_EXTRAS = ("Subsurface Weight", "Transmission Weight", "Coat Weight", "Sheen Weight", "Thin Film Thickness")
+    PRINCIPLED_EXTRAS = (
+        "Subsurface Weight",
+        "Transmission Weight",
+        "Coat Weight",
+        "Sheen Weight",
+        "Thin Film Thickness",
+    )
 else:
     PRINCIPLED_SPECULAR, PRINCIPLED_SPECULAR_OF_IOR = "Specular", False
     PRINCIPLED_EMISSION = "Emission"

@@ -73,7 +73,9 @@ class WARDMIS_RenderEngine(bpy.types.RenderEngine):
             self.report({"ERROR"}, f"WardMIS: {error.strerror or error}: {error.filename or 'a file of the render'}")
         except Exception as error:  # a mistake of ours; without the report Blender would save a blank image
             traceback.print_exc()
-            self.report({"ERROR"}, f"WardMIS: an error in the add-on, please report it with the console's text: {error!r}")
+            self.report(
+                {"ERROR"}, f"WardMIS: an error in the add-on, please report it with the console's text: {error!r}"
+            )
 
 
 class _Render:
@@ -88,8 +90,8 @@ class _Render:
         self.image_path = folder / "image.exr"
         self.preview_path = folder / "preview.exr"
         self.result: Any = None
-        self.statistics: dict[str, Any] = {}
         self.notes: set[str] = set()
+        self.statistics: dict[str, Any] = {}
 
     def run(self) -> None:
         if _export_to is not None:
@@ -102,7 +104,7 @@ class _Render:
         try:
             with Renderer([str(binary), "render", *self._arguments()]) as renderer:
                 self._follow(renderer)
-                self._show(self.image_path)
+            self._show(self.image_path)
         except Exception:
             if self.result is not None and not self.engine.test_break():
                 self.engine.end_result(self.result, cancel=True)
@@ -112,9 +114,9 @@ class _Render:
             # a stopped render keeps the image so far
             if self.result is not None:
                 self.engine.end_result(self.result)
-            if self.statistics:  # saved files carry them, as they do Cycles' own
-                name = f"wardmis.{self.layer.name}.statistics"
-                self.engine.get_result().stamp_data_add_field(name, json.dumps(self.statistics))
+        # saved files carry it, as they do Cycles' own
+        name = f"wardmis.{self.layer.name}.statistics"
+        self.engine.get_result().stamp_data_add_field(name, json.dumps(self.statistics))
 
     def _export(self, path: Path) -> None:
         self.engine.update_stats("", "Exporting the scene")

@@ -39,6 +39,7 @@ class _Panel:
     bl_space_type = "PROPERTIES"
     bl_region_type = "WINDOW"
     COMPAT_ENGINES = {ENGINE}
+    layout: Any
 
     @classmethod
     def poll(cls, context: Any) -> bool:

@@ -57,19 +57,27 @@ def _make_executable(path: Path) -> None:
         try:
             path.chmod(path.stat().st_mode | stat.S_IXUSR | stat.S_IXGRP | stat.S_IXOTH)
         except OSError as error:
-            raise RendererError(f"the renderer {path} may not be run, and cannot be made to ({error}); chmod +x it") from error
+            raise RendererError(
+                f"the renderer {path} may not be run, and cannot be made to ({error}); chmod +x it"
+            ) from error
 
 
 def version(path: Path) -> str:
     """What `wardmis --version` says."""
     try:
-        done = subprocess.run([path, "--version"], capture_output=True, text=True, errors="replace", timeout=10, stdin=subprocess.DEVNULL)
+        done = subprocess.run(
+            [path, "--version"], capture_output=True, text=True, errors="replace", timeout=10, stdin=subprocess.DEVNULL
+        )
     except OSError as error:
         raise RendererError(f"{path} cannot be run: {error.strerror or error}") from error
     except subprocess.TimeoutExpired as error:
-        raise RendererError(f"{path} --version did not answer within 10 seconds; is it the WardMIS renderer?") from error
+        raise RendererError(
+            f"{path} --version did not answer within 10 seconds; is it the WardMIS renderer?"
+        ) from error
     if done.returncode != 0 or not done.stdout.startswith("wardmis"):
-        raise RendererError(f"{path} is not the WardMIS renderer: --version said '{(done.stdout or done.stderr).strip()[:200]}'")
+        raise RendererError(
+            f"{path} is not the WardMIS renderer: --version said '{(done.stdout or done.stderr).strip()[:200]}'"
+        )
     return done.stdout.strip().splitlines()[0]
 
 

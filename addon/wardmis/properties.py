@@ -58,7 +58,9 @@ class WARDMIS_PG_scene(bpy.types.PropertyGroup):
     integrand: EnumProperty(
         name="Integrand", description="What the techniques estimate together", items=INTEGRANDS, default="split"
     )
-    integrator: EnumProperty(name="Integrator", description="Which light is rendered", items=INTEGRATORS, default="path")
+    integrator: EnumProperty(
+        name="Integrator", description="Which light is rendered", items=INTEGRATORS, default="path"
+    )
     stop_by: EnumProperty(name="Stop by", description="What ends the render", items=STOPS, default="samples")
     samples: IntProperty(name="Samples", description="Camera samples per pixel", default=64, min=1, soft_max=4096)
     seconds: FloatProperty(
@@ -93,9 +95,16 @@ class WARDMIS_PG_scene(bpy.types.PropertyGroup):
         subtype="FACTOR",
     )
     max_depth: IntProperty(
-        name="Max Depth", description="Surface hits of a path; 1 is direct light", default=8, min=1, soft_max=64, max=1024
+        name="Max Depth",
+        description="Surface hits of a path; 1 is direct light",
+        default=8,
+        min=1,
+        soft_max=64,
+        max=1024,
     )
-    sampler: EnumProperty(name="Sampler", description="Where the random numbers come from", items=SAMPLERS, default="sobol")
+    sampler: EnumProperty(
+        name="Sampler", description="Where the random numbers come from", items=SAMPLERS, default="sobol"
+    )
     seed: IntProperty(name="Seed", description="The image depends on it, and never on the threads", default=0, min=0)
     threads: IntProperty(
         name="Threads",

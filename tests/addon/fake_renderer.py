@@ -101,14 +101,31 @@ def render(options, film, mode):
     x0, y0, x1, y1 = film["border"]
     width, height = x1 - x0, y1 - y0
     passes = [{"name": name, "channels": channels} for name, channels in PASSES.items()]
-    say(event="start", version="0.0.0", width=width, height=height, spp=options.spp, passes=passes, left_out=[], notes=[])
+    say(
+        event="start",
+        version="0.0.0",
+        width=width,
+        height=height,
+        spp=options.spp,
+        passes=passes,
+        left_out=[],
+        notes=[],
+    )
     if mode == "hang":
         signal.signal(signal.SIGTERM, signal.SIG_IGN)
         time.sleep(600)
     steps = 100 if mode == "slow" else 2
     for step in range(1, steps + 1):
         time.sleep(0.1 if mode == "slow" else 0.01)
-        say(event="progress", phase="render", samples=step, of=steps, fraction=step / steps, seconds=0.1 * step, left=0.1 * (steps - step))
+        say(
+            event="progress",
+            phase="render",
+            samples=step,
+            of=steps,
+            fraction=step / steps,
+            seconds=0.1 * step,
+            left=0.1 * (steps - step),
+        )
         if options.preview and step == 1:
             write_exr(options.preview, options.layer, {"Combined": "RGBA"}, film)
             say(event="preview", path=options.preview, samples=step)
@@ -119,7 +136,7 @@ def render(options, film, mode):
         film = {**film, "border": [x0, y0, x1 + 1, y1 + 1]}
     if mode != "nothing":
         write_exr(options.output, options.layer, PASSES, film)
-    say(event="done", path=options.output, seconds=0.1, samples=options.spp, stats={})
+    say(event="done", path=options.output, seconds=0.1, samples=options.spp, stats={"samples_per_pixel": options.spp})
 
 
 def write_exr(path, layer, passes, film):
@@ -128,7 +145,9 @@ def write_exr(path, layer, passes, film):
     full_width, full_height = film["resolution"]
     width, height = x1 - x0, y1 - y0
     channels = sorted(
-        (f"{layer}.{name}.{channel}".encode(), k) for k, (name, letters) in enumerate(passes.items()) for channel in letters
+        (f"{layer}.{name}.{channel}".encode(), k)
+        for k, (name, letters) in enumerate(passes.items())
+        for channel in letters
     )
     channel_list = b"".join(name + struct.pack("<xiB3xii", 2, 0, 1, 1) for name, _ in channels) + b"\0"
     window = struct.pack("<4i", 0, 0, width - 1, height - 1)
@@ -155,7 +174,9 @@ def write_exr(path, layer, passes, film):
             y = y1 - 1 - line  # files count from the top, borders from the bottom
             file.write(struct.pack("<ii", line, line_bytes - 8))
             for _, k in channels:
-                file.write(array.array("f", [k + x / full_width + 10 * y / full_height for x in range(x0, x1)]).tobytes())
+                file.write(
+                    array.array("f", [k + x / full_width + 10 * y / full_height for x in range(x0, x1)]).tobytes()
+                )
     os.rename(f"{path}.tmp", path)
 
 

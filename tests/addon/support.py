@@ -84,7 +84,9 @@ class Run:
         self.left_over = [p.name for p in (folder / "tmp").rglob("wardmis-*")]
 
 
-def blender(folder: Path, script: str, *arguments: str, fake: str = "good", **environment: str) -> subprocess.Popen[str]:
+def blender(
+    folder: Path, script: str, *arguments: str, fake: str = "good", **environment: str
+) -> subprocess.Popen[str]:
     """Starts a background Blender with the add-on; `script` sets the scene up, `arguments` are Blender's own."""
     scripts = folder / "scripts"
     if not scripts.exists():
@@ -92,7 +94,9 @@ def blender(folder: Path, script: str, *arguments: str, fake: str = "good", **en
         (scripts / "addons" / "wardmis").symlink_to(ADDON, target_is_directory=True)
         (folder / "config").mkdir()
         (folder / "tmp").mkdir()
-    (folder / "setup.py").write_text("import bpy\nscene = bpy.context.scene\nscene.render.resolution_percentage = 5\n" + script)
+    (folder / "setup.py").write_text(
+        "import bpy\nscene = bpy.context.scene\nscene.render.resolution_percentage = 5\n" + script
+    )
     clean = {
         "BLENDER_USER_RESOURCES": str(folder / "resources"),
         "BLENDER_USER_SCRIPTS": str(scripts),
@@ -102,10 +106,31 @@ def blender(folder: Path, script: str, *arguments: str, fake: str = "good", **en
         "WARDMIS_FAKE": fake,
         "WARDMIS_FAKE_LOG": str(folder / "calls.log"),
     }
-    command = [bpy.app.binary_path, "--background", "--factory-startup", "--python-exit-code", "1", "--addons", "wardmis"]
-    command += ["--python", str(folder / "setup.py"), "--engine", "WARDMIS", "--render-output", str(folder / "image_####"), *arguments]
+    command = [
+        bpy.app.binary_path,
+        "--background",
+        "--factory-startup",
+        "--python-exit-code",
+        "1",
+        "--addons",
+        "wardmis",
+    ]
+    command += [
+        "--python",
+        str(folder / "setup.py"),
+        "--engine",
+        "WARDMIS",
+        "--render-output",
+        str(folder / "image_####"),
+        *arguments,
+    ]
     return subprocess.Popen(
-        command, env={**os.environ, **clean, **environment}, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace"
+        command,
+        env={**os.environ, **clean, **environment},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        errors="replace",
     )
 
 
@@ -121,14 +146,16 @@ class RenderTest(unittest.TestCase):
         process = blender(self.folder, script, *(arguments or ("--render-frame", "1")), **options)
         output, errors = process.communicate(timeout=120)
         return Run(
-            self.folder, subprocess.CompletedProcess(process.args, process.returncode, output, errors), self.folder / "calls.log"
+            self.folder,
+            subprocess.CompletedProcess(process.args, process.returncode, output, errors),
+            self.folder / "calls.log",
         )
 
 
-def read_exr(path: Path) -> dict[str, np.ndarray]:
-    """The channels of an uncompressed, single-part, scan-line OpenEXR; row 0 is the top one."""
+def exr_attributes(path: Path) -> tuple[dict[str, bytes], int]:
+    """The header of an OpenEXR, and where it ends."""
     data = path.read_bytes()
-    assert struct.unpack_from("<II", data)[0] == 20000630, path
+    assert struct.unpack_from("<I", data)[0] == 20000630, path
     attributes, at = {}, 8
     while data[at]:
         name, at = _string(data, at)
@@ -136,6 +163,13 @@ def read_exr(path: Path) -> dict[str, np.ndarray]:
         (size,) = struct.unpack_from("<i", data, at)
         attributes[name] = data[at + 4 : at + 4 + size]
         at += 4 + size
+    return attributes, at + 1
+
+
+def read_exr(path: Path) -> dict[str, np.ndarray]:
+    """The channels of an uncompressed, single-part, scan-line OpenEXR; row 0 is the top one."""
+    data = path.read_bytes()
+    attributes, at = exr_attributes(path)
     assert attributes["compression"] == b"\0", f"{path} is compressed"
     x0, y0, x1, y1 = struct.unpack("<4i", attributes["dataWindow"])
     width, height = x1 - x0 + 1, y1 - y0 + 1
@@ -146,7 +180,7 @@ def read_exr(path: Path) -> dict[str, np.ndarray]:
         channels.append((name, {1: np.dtype("<f2"), 2: np.dtype("<f4")}[kind]))
         position += 16
     image = {name: np.empty((height, width), np.float32) for name, _ in channels}
-    for offset in struct.unpack_from(f"<{height}Q", data, at + 1):
+    for offset in struct.unpack_from(f"<{height}Q", data, at):
         (line,) = struct.unpack_from("<i", data, offset)
         start = offset + 8
         for name, kind in channels:

@@ -88,7 +88,9 @@ class Settings(unittest.TestCase):
 
 class Panels(unittest.TestCase):
     def test_what_the_engine_reads_can_be_edited(self):
-        shown = {p.__name__ for p in bpy.types.Panel.__subclasses__() if panels.ENGINE in getattr(p, "COMPAT_ENGINES", ())}
+        shown = {
+            p.__name__ for p in bpy.types.Panel.__subclasses__() if panels.ENGINE in getattr(p, "COMPAT_ENGINES", ())
+        }
         for name in (
             "DATA_PT_lens",
             "DATA_PT_camera_dof",
@@ -108,6 +110,12 @@ class Panels(unittest.TestCase):
         for kind in ("POINT", "SPOT", "SUN", "AREA"):
             light = bpy.data.lights.new("Light", kind)
             for name in panels._light_settings(light):
-                if name not in {"use_temperature", "temperature", "exposure", "normalize", "use_soft_falloff"}:  # later versions'
+                if name not in {
+                    "use_temperature",
+                    "temperature",
+                    "exposure",
+                    "normalize",
+                    "use_soft_falloff",
+                }:  # later versions'
                     self.assertTrue(hasattr(light, name), f"{kind}.{name}")
             bpy.data.lights.remove(light)

@@ -44,14 +44,18 @@ class Meshes(SceneTest):
         np.testing.assert_allclose(areas.sum(axis=0), (0, 0, 8))  # the right way round
 
     def test_smooth_mesh_has_a_normal_for_each_vertex(self):
-        mesh = self.add_mesh("Roof", [(-1, 0, 0), (0, 0, 1), (1, 0, 0), (-1, 1, 0), (0, 1, 1), (1, 1, 0)], [(0, 1, 4, 3), (1, 2, 5, 4)]).data
+        mesh = self.add_mesh(
+            "Roof", [(-1, 0, 0), (0, 0, 1), (1, 0, 0), (-1, 1, 0), (0, 1, 1), (1, 1, 0)], [(0, 1, 4, 3), (1, 2, 5, 4)]
+        ).data
         mesh.polygons.foreach_set("use_smooth", [True, True])
         exported = self.gather().meshes[0]
         self.assertEqual(len(exported.positions), 6)
         np.testing.assert_allclose(abs(exported.normals[1]), (0, 0, 1), atol=1e-6)
 
     def test_flat_and_smooth_faces_together_have_a_normal_for_each_corner(self):
-        mesh = self.add_mesh("Roof", [(-1, 0, 0), (0, 0, 1), (1, 0, 0), (-1, 1, 0), (0, 1, 1), (1, 1, 0)], [(0, 1, 4, 3), (1, 2, 5, 4)]).data
+        mesh = self.add_mesh(
+            "Roof", [(-1, 0, 0), (0, 0, 1), (1, 0, 0), (-1, 1, 0), (0, 1, 1), (1, 1, 0)], [(0, 1, 4, 3), (1, 2, 5, 4)]
+        ).data
         mesh.polygons.foreach_set("use_smooth", [True, False])
         exported = self.gather().meshes[0]
         self.assertEqual(len(exported.positions), 8)
@@ -140,7 +144,10 @@ class Meshes(SceneTest):
         mesh.vertices.foreach_set("co", np.stack([x, y, 0.1 * np.sin(9 * x)], -1).astype(np.float32).reshape(-1))
         corner = np.arange(n * n) + np.arange(n * n) // n
         mesh.loops.add(4 * n * n)
-        mesh.loops.foreach_set("vertex_index", np.stack([corner, corner + 1, corner + n + 2, corner + n + 1], -1).astype(np.int32).reshape(-1))
+        mesh.loops.foreach_set(
+            "vertex_index",
+            np.stack([corner, corner + 1, corner + n + 2, corner + n + 1], -1).astype(np.int32).reshape(-1),
+        )
         mesh.polygons.add(n * n)
         mesh.polygons.foreach_set("loop_start", np.arange(0, 4 * n * n, 4, dtype=np.int32))
         if compat.VERSION < (4, 1, 0):
@@ -162,7 +169,9 @@ class Meshes(SceneTest):
 
 class Materials(SceneTest):
     def test_slots_become_primitives_that_share_their_vertices(self):
-        quads = self.add_mesh("Two", [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (2, 0, 0), (2, 1, 0)], [(0, 1, 2, 3), (1, 4, 5, 2)])
+        quads = self.add_mesh(
+            "Two", [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (2, 0, 0), (2, 1, 0)], [(0, 1, 2, 3), (1, 4, 5, 2)]
+        )
         for name in ("Left", "Unused", "Right"):
             quads.data.materials.append(bpy.data.materials.new(name))
         quads.data.polygons[1].material_index = 2
@@ -251,7 +260,10 @@ class Instances(SceneTest):
         emitter.modifiers.new("Particles", "PARTICLE_SYSTEM")
         settings = emitter.particle_systems[0].settings
         settings.count, settings.frame_start, settings.frame_end, settings.lifetime = 20, 1, 1, 50
-        settings.render_type, settings.instance_object = "OBJECT", self.add_mesh("Leaf", [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
+        settings.render_type, settings.instance_object = (
+            "OBJECT",
+            self.add_mesh("Leaf", [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]),
+        )
         emitter.show_instancer_for_viewport = False
         self.scene.frame_set(2)
         scene = self.gather()
@@ -265,7 +277,8 @@ class Instances(SceneTest):
         compat.add_group_socket(tree, "Geometry", "NodeSocketGeometry", "INPUT")
         compat.add_group_socket(tree, "Geometry", "NodeSocketGeometry", "OUTPUT")
         given, made, instance, info = (
-            tree.nodes.new(kind) for kind in ("NodeGroupInput", "NodeGroupOutput", "GeometryNodeInstanceOnPoints", "GeometryNodeObjectInfo")
+            tree.nodes.new(kind)
+            for kind in ("NodeGroupInput", "NodeGroupOutput", "GeometryNodeInstanceOnPoints", "GeometryNodeObjectInfo")
         )
         info.inputs["Object"].default_value = quad
         tree.links.new(given.outputs[0], instance.inputs["Points"])
@@ -322,7 +335,9 @@ class Visibility(SceneTest):
         layers["Indirect"].indirect_only = layers["Holdout"].holdout = True
         scene = self.gather()
         self.assertEqual({i.name: set(i.hidden_from) for i in scene.instances}["Indirect"], {"camera"})
-        self.assertEqual(scene.notes, ["object 'Holdout': holdouts are not supported; it is rendered as any other object"])
+        self.assertEqual(
+            scene.notes, ["object 'Holdout': holdouts are not supported; it is rendered as any other object"]
+        )
 
     def test_motion_blur_is_noted(self):
         self.scene.render.use_motion_blur = True
@@ -374,7 +389,9 @@ class Stopping(SceneTest):
             self.add("Copy", quad.data)
         with tempfile.TemporaryDirectory() as folder:
             with self.assertRaises(ExportCancelled):
-                export_depsgraph(bpy.context.evaluated_depsgraph_get(), Path(folder) / "scene.glb", cancelled=lambda: True)
+                export_depsgraph(
+                    bpy.context.evaluated_depsgraph_get(), Path(folder) / "scene.glb", cancelled=lambda: True
+                )
             self.assertEqual(list(Path(folder).iterdir()), [])
 
     def test_question_is_asked_often_enough_and_not_too_often(self):
@@ -392,5 +409,7 @@ class Matrices(SceneTest):
         parent.location, parent.rotation_euler, parent.scale = (1, 2, 3), (0.1, 0.2, 0.3), (2, 2, 2)
         quad.parent, quad.location, quad.scale = parent, (0, 1, 0), (1, -3, 1)
         bpy.context.view_layer.update()
-        expected = Matrix.LocRotScale(parent.location, parent.rotation_euler, parent.scale) @ Matrix.LocRotScale(quad.location, None, quad.scale)
+        expected = Matrix.LocRotScale(parent.location, parent.rotation_euler, parent.scale) @ Matrix.LocRotScale(
+            quad.location, None, quad.scale
+        )
         np.testing.assert_allclose(self.gather().instances[0].matrix, np.array(expected), rtol=1e-5, atol=1e-6)

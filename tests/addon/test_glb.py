@@ -44,12 +44,16 @@ def matrix(linear: np.ndarray, translation=(0, 0, 0)) -> np.ndarray:
 
 def triangle(name: str = "Triangle", **arrays) -> MeshData:
     positions = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0)], np.float32)
-    return MeshData(name, positions, arrays.get("normals"), arrays.get("uvs"), [PrimitiveData(0, np.array([(0, 1, 2)], np.uint32))])
+    return MeshData(
+        name, positions, arrays.get("normals"), arrays.get("uvs"), [PrimitiveData(0, np.array([(0, 1, 2)], np.uint32))]
+    )
 
 
 def scene(**parts) -> SceneData:
     camera = CameraData("Camera", np.eye(4), "perspective", (-0.36, 0.36, -0.2, 0.2), (0.1, 100))
-    return SceneData("test", FilmData((64, 32), (0, 0, 64, 32)), camera, **{"materials": [MaterialData("Grey")], **parts})
+    return SceneData(
+        "test", FilmData((64, 32), (0, 0, 64, 32)), camera, **{"materials": [MaterialData("Grey")], **parts}
+    )
 
 
 class GlbTest(unittest.TestCase):
@@ -99,13 +103,19 @@ class Structure(GlbTest):
         self.assertEqual(positions[0], positions[1])
 
     def test_too_large_for_a_glb(self):
-        with mock.patch.object(glb, "MAX_BYTES", 100), self.assertRaisesRegex(ExportError, "a GLB file holds 4 GiB; use instances"):
+        with (
+            mock.patch.object(glb, "MAX_BYTES", 100),
+            self.assertRaisesRegex(ExportError, "a GLB file holds 4 GiB; use instances"),
+        ):
             self.write(scene(meshes=[triangle()]))
         self.assertEqual(list(self.folder.iterdir()), [])
 
     def test_failed_write_leaves_the_old_file(self):
         self.path.write_text("old")
-        with mock.patch.object(glb.os, "replace", side_effect=OSError(28, "No space left on device")), self.assertRaises(OSError):
+        with (
+            mock.patch.object(glb.os, "replace", side_effect=OSError(28, "No space left on device")),
+            self.assertRaises(OSError),
+        ):
             self.write(scene())
         self.assertEqual([p.read_text() for p in self.folder.iterdir()], ["old"])
 
@@ -121,17 +131,25 @@ class Instances(GlbTest):
             world = parent @ local
             if "mesh" in node:
                 instancing = node.get("extensions", {}).get("EXT_mesh_gpu_instancing")
-                found.extend([world] if instancing is None else [world @ m for m in self.instances(document, binary, instancing["attributes"])])
+                found.extend(
+                    [world]
+                    if instancing is None
+                    else [world @ m for m in self.instances(document, binary, instancing["attributes"])]
+                )
             for child in node.get("children", []):
                 visit(child, world)
 
         for root in document["scenes"][document["scene"]]["nodes"]:
             visit(root, np.eye(4))
-        z_up = np.array([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])  # (x, y, z) of glTF is (x, -z, y) of Blender
+        z_up = np.array(
+            [[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]]
+        )  # (x, y, z) of glTF is (x, -z, y) of Blender
         return [z_up @ m for m in found]
 
     def instances(self, document, binary, attributes):
-        parts = (accessor(document, binary, attributes[key]).astype(float) for key in ("TRANSLATION", "ROTATION", "SCALE"))
+        parts = (
+            accessor(document, binary, attributes[key]).astype(float) for key in ("TRANSLATION", "ROTATION", "SCALE")
+        )
         for t, (x, y, z, w), s in zip(*parts):
             turn = np.array(
                 [
@@ -193,28 +211,48 @@ class Content(GlbTest):
             0.3,
             ColorInput((3, 3, 0)),
         )
-        images = [ImageData("photo", encoded=b"PNG..", mime_type="image/png"), ImageData("data", "linear", pixels=np.zeros((2, 3, 4), np.float32))]
+        images = [
+            ImageData("photo", encoded=b"PNG..", mime_type="image/png"),
+            ImageData("data", "linear", pixels=np.zeros((2, 3, 4), np.float32)),
+        ]
         textures = [TextureData(0), TextureData(1, "mirror", nearest=True)]
         document, _ = self.write(scene(materials=[material], images=images, textures=textures))
         written = document["materials"][0]["extensions"]["WARDMIS_scene"]
         self.assertEqual(written["variant"], "ward-dur")
         self.assertEqual(written["diffuse"], {"value": [0.2, 0.1, 0]})
         self.assertEqual(written["specular"], {"value": [1, 1, 1], "texture": {"index": 0}})
-        self.assertEqual(written["alphaY"], {"value": 1.0, "texture": {"index": 1, "channel": 2, "transform": [2, 0, 0, 0, 2, 0.5]}})
+        self.assertEqual(
+            written["alphaY"], {"value": 1.0, "texture": {"index": 1, "channel": 2, "transform": [2, 0, 0, 0, 2, 0.5]}}
+        )
         self.assertEqual((written["rotation"], written["emission"]), (0.3, {"value": [3, 3, 0]}))
-        self.assertEqual(document["materials"][0]["extensions"]["KHR_materials_emissive_strength"], {"emissiveStrength": 3})
+        self.assertEqual(
+            document["materials"][0]["extensions"]["KHR_materials_emissive_strength"], {"emissiveStrength": 3}
+        )
         self.assertEqual(document["materials"][0]["emissiveFactor"], [1, 1, 0])
         self.assertEqual(document["images"][1]["mimeType"], "application/x-wardmis-pixels")
         expected = {"colorSpace": "linear", "width": 3, "height": 2, "channels": 4, "type": "f32"}
         self.assertEqual(document["images"][1]["extensions"]["WARDMIS_scene"], expected)
-        self.assertEqual(document["samplers"][document["textures"][1]["sampler"]], {"magFilter": 9728, "wrapS": 33648, "wrapT": 33648})
+        self.assertEqual(
+            document["samplers"][document["textures"][1]["sampler"]],
+            {"magFilter": 9728, "wrapS": 33648, "wrapT": 33648},
+        )
         # other viewers get the PNG
         self.assertEqual(document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"], {"index": 0})
 
     def test_lights(self):
         lights = [
             LightData("Area", "area", np.eye(4), (1, 1, 1), 5.0, shape="ellipse", size=(1, 2), spread=1.0),
-            LightData("Spot", "spot", np.eye(4), (1, 0, 0), 7.0, radius=0.1, angle=0.5, blend=0.2, hidden_from=frozenset({"camera"})),
+            LightData(
+                "Spot",
+                "spot",
+                np.eye(4),
+                (1, 0, 0),
+                7.0,
+                radius=0.1,
+                angle=0.5,
+                blend=0.2,
+                hidden_from=frozenset({"camera"}),
+            ),
             LightData("Sun", "sun", np.eye(4), (1, 1, 1), 3.0, angle=0.01, shadow=False),
         ]
         document, _ = self.write(scene(lights=lights))
@@ -223,16 +261,28 @@ class Content(GlbTest):
         self.assertEqual((spot["intensity"], spot["angle"], spot["blend"], spot["cosine"]), (7.0, 0.5, 0.2, False))
         self.assertEqual((sun["irradiance"], sun["angle"], sun["shadow"]), (3.0, 0.01, False))
         nodes = [n["extensions"]["WARDMIS_scene"] for n in document["nodes"] if "extensions" in n]
-        self.assertEqual(nodes, [{"light": 0}, {"light": 1, "visibility": ["diffuse", "glossy", "shadow"]}, {"light": 2}])
+        self.assertEqual(
+            nodes, [{"light": 0}, {"light": 1, "visibility": ["diffuse", "glossy", "shadow"]}, {"light": 2}]
+        )
 
     def test_world_film_and_notes(self):
-        data = scene(images=[ImageData("sky", "linear", b"v/1\x01", "image/x-exr")], textures=[TextureData(0)], notes=["a note"])
+        data = scene(
+            images=[ImageData("sky", "linear", b"v/1\x01", "image/x-exr")], textures=[TextureData(0)], notes=["a note"]
+        )
         turned = np.array([(0.0, -1, 0), (1, 0, 0), (0, 0, 1)])
         data.world = WorldData((2, 2, 2), 0, turned)
         data.film = FilmData((64, 32), (8, 4, 16, 12), "gaussian", 2.0, 0.5, True)
         extension = self.write(data)[0]["extensions"]["WARDMIS_scene"]
-        self.assertEqual(extension["world"], {"radiance": [2, 2, 2], "texture": {"index": 0, "matrix": [0, -1, 0, 1, 0, 0, 0, 0, 1]}})
-        film = {"resolution": [64, 32], "border": [8, 4, 16, 12], "filter": {"type": "gaussian", "width": 2.0}, "exposure": 0.5, "transparent": True}
+        self.assertEqual(
+            extension["world"], {"radiance": [2, 2, 2], "texture": {"index": 0, "matrix": [0, -1, 0, 1, 0, 0, 0, 0, 1]}}
+        )
+        film = {
+            "resolution": [64, 32],
+            "border": [8, 4, 16, 12],
+            "filter": {"type": "gaussian", "width": 2.0},
+            "exposure": 0.5,
+            "transparent": True,
+        }
         self.assertEqual((extension["film"], extension["notes"]), (film, ["a note"]))
 
     def test_orthographic_camera_for_other_viewers(self):

@@ -138,13 +138,22 @@ class Camera(SceneTest):
     def test_view_plane_is_that_of_blenders_own_matrix(self):
         render, data = self.scene.render, self.camera.data
         combinations = itertools.product(
-            ("PERSP", "ORTHO"), ("AUTO", "HORIZONTAL", "VERTICAL"), ((160, 90), (90, 160), (100, 100)), ((1, 1), (2, 1), (1, 1.5)), (0, 0.3)
+            ("PERSP", "ORTHO"),
+            ("AUTO", "HORIZONTAL", "VERTICAL"),
+            ((160, 90), (90, 160), (100, 100)),
+            ((1, 1), (2, 1), (1, 1.5)),
+            (0, 0.3),
         )
         for kind, fit, (width, height), (ax, ay), shift in combinations:
             with self.subTest(f"{kind} {fit} {width}x{height} {ax}:{ay} {shift}"):
                 data.type, data.sensor_fit, data.sensor_width, data.sensor_height = kind, fit, 36, 20
                 data.lens, data.ortho_scale, data.shift_x, data.shift_y = 40, 5, shift, -shift / 2
-                render.resolution_x, render.resolution_y, render.pixel_aspect_x, render.pixel_aspect_y = width, height, ax, ay
+                render.resolution_x, render.resolution_y, render.pixel_aspect_x, render.pixel_aspect_y = (
+                    width,
+                    height,
+                    ax,
+                    ay,
+                )
                 left, right, bottom, top = view_plane(data, render, full_resolution(render))
                 depsgraph = bpy.context.evaluated_depsgraph_get()
                 matrix = self.camera.calc_matrix_camera(depsgraph, x=width, y=height, scale_x=ax, scale_y=ay)
@@ -189,7 +198,9 @@ class Film(SceneTest):
     def test_settings(self):
         render, settings = self.scene.render, self.scene.wardmis
         film = self.gather().film
-        self.assertEqual((film.filter_type, film.filter_width, film.exposure, film.transparent), ("blackman-harris", 1.5, 1, False))
+        self.assertEqual(
+            (film.filter_type, film.filter_width, film.exposure, film.transparent), ("blackman-harris", 1.5, 1, False)
+        )
         render.resolution_x, render.resolution_y, render.resolution_percentage = 333, 101, 50
         render.film_transparent = True
         settings.filter_type, settings.film_exposure = "box", 2
@@ -249,7 +260,12 @@ class World(SceneTest):
 
     def test_mapping_turns_the_environment(self):
         quarter = (0, 0, math.pi / 2)
-        for kind, turned in (("POINT", (0, 1, 0)), ("VECTOR", (0, 1, 0)), ("NORMAL", (0, 1, 0)), ("TEXTURE", (0, -1, 0))):
+        for kind, turned in (
+            ("POINT", (0, 1, 0)),
+            ("VECTOR", (0, 1, 0)),
+            ("NORMAL", (0, 1, 0)),
+            ("TEXTURE", (0, -1, 0)),
+        ):
             with self.subTest(kind):
                 self.environment(kind, quarter)
                 scene = self.gather()

@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import time
 from pathlib import Path
 
 import bpy
-from support import HERE, RenderTest, blender, read_exr
+from support import HERE, RenderTest, blender, exr_attributes, read_exr
 
 MULTILAYER = """
 image = scene.render.image_settings
@@ -33,16 +34,30 @@ class Passes(RenderTest):
         run = self.run_blender(MULTILAYER)
         self.assertEqual(run.code, 0, run.output)
         image = read_exr(run.images[0])
-        first_channels = ("Combined.R", "Depth.Z", "Normal.X", "Albedo.R", "Variance.R", "Allocation Lobe.X", "Allocation Light.X")
+        first_channels = (
+            "Combined.R",
+            "Depth.Z",
+            "Normal.X",
+            "Albedo.R",
+            "Variance.R",
+            "Allocation Lobe.X",
+            "Allocation Light.X",
+        )
         for k, channel in enumerate(first_channels):
             pixels = image[f"ViewLayer.{channel}"]
             self.assertEqual(pixels.shape, (20, 40))
             for x, y in ((0, 0), (39, 0), (7, 13)):
                 self.assertAlmostEqual(float(pixels[19 - y, x]), value(k, x, y), 5, channel)
-        self.assertFalse(image["ViewLayer.Allocation Cosine.X"].any(), "a technique that the scene does not have got samples")
+        statistics = json.loads(exr_attributes(run.images[0])[0]["wardmis.ViewLayer.statistics"])
+        self.assertEqual(statistics["samples_per_pixel"], 64)
+        self.assertFalse(
+            image["ViewLayer.Allocation Cosine.X"].any(), "a technique that the scene does not have got samples"
+        )
 
     def test_passes_that_blender_adds_are_not_doubled(self):
-        run = self.run_blender(MULTILAYER + "layer = bpy.context.view_layer\nlayer.use_pass_z = layer.use_pass_normal = True\n")
+        run = self.run_blender(
+            MULTILAYER + "layer = bpy.context.view_layer\nlayer.use_pass_z = layer.use_pass_normal = True\n"
+        )
         self.assertEqual(run.code, 0, run.output)
         image = read_exr(run.images[0])
         self.assertAlmostEqual(float(image["ViewLayer.Depth.Z"][19, 3]), value(1, 3, 0), 5)
@@ -66,9 +81,13 @@ class Passes(RenderTest):
         bpy.data.scenes.remove(scene)
 
     def test_every_view_layer_is_rendered(self):
-        run = self.run_blender(MULTILAYER + "scene.view_layers.new('Second')\nscene.view_layers.new('Off').use = False\n")
+        run = self.run_blender(
+            MULTILAYER + "scene.view_layers.new('Second')\nscene.view_layers.new('Off').use = False\n"
+        )
         self.assertEqual(run.code, 0, run.output)
-        self.assertEqual([call["arguments"][call["arguments"].index("--layer") + 1] for call in run.calls], ["ViewLayer", "Second"])
+        self.assertEqual(
+            [call["arguments"][call["arguments"].index("--layer") + 1] for call in run.calls], ["ViewLayer", "Second"]
+        )
         image = read_exr(run.images[0])
         for layer in ("ViewLayer", "Second"):
             self.assertAlmostEqual(float(image[f"{layer}.Variance.R"][19, 3]), value(4, 3, 0), 5, layer)
@@ -100,7 +119,9 @@ class Arguments(RenderTest):
             "s.max_depth, s.sampler, s.seed, s.threads = 3, 'independent', 11, 2\n"
         )
         arguments = run.calls[0]["arguments"]
-        expected = "--allocation variance --weights power --integrand joint --integrator direct --spp 7 --samples-per-hit 5 "
+        expected = (
+            "--allocation variance --weights power --integrand joint --integrator direct --spp 7 --samples-per-hit 5 "
+        )
         expected += "--pilot-spp 2 --min-fraction 0.05 --max-depth 3 --sampler independent --seed 11 --threads 2"
         words = expected.split()
         for option, setting in zip(words[::2], words[1::2]):
@@ -108,7 +129,9 @@ class Arguments(RenderTest):
         self.assertNotIn("--time", arguments)
 
     def test_stop_by_seconds_and_blenders_threads(self):
-        run = self.run_blender("s = scene.wardmis\ns.stop_by, s.seconds = 'seconds', 2.5\nscene.render.threads_mode = 'FIXED'\nscene.render.threads = 3\n")
+        run = self.run_blender(
+            "s = scene.wardmis\ns.stop_by, s.seconds = 'seconds', 2.5\nscene.render.threads_mode = 'FIXED'\nscene.render.threads = 3\n"
+        )
         arguments = run.calls[0]["arguments"]
         self.assertEqual(arguments[arguments.index("--time") + 1], "2.5")
         self.assertEqual(arguments[arguments.index("--threads") + 1], "3")
@@ -144,7 +167,11 @@ class Failures(RenderTest):
         self.check("WardMIS: the renderer crashed (SIGSEGV)", fake="crash")
 
     def test_crash_with_exr_output(self):
-        self.check("WardMIS: the renderer crashed (SIGSEGV)", "scene.render.image_settings.file_format = 'OPEN_EXR'\n", fake="crash")
+        self.check(
+            "WardMIS: the renderer crashed (SIGSEGV)",
+            "scene.render.image_settings.file_format = 'OPEN_EXR'\n",
+            fake="crash",
+        )
 
     def test_message_of_the_renderer(self):
         self.check("exit code 3): bufferViews[0]: lies beyond the file", fake="exit3")
@@ -191,7 +218,8 @@ class Failures(RenderTest):
 
     def test_mesh_that_is_not_finite(self):
         self.check(
-            "object 'Cube': vertex 3 of mesh 'Cube' is at (nan,", "bpy.data.meshes['Cube'].vertices[3].co.x = float('nan')\n"
+            "object 'Cube': vertex 3 of mesh 'Cube' is at (nan,",
+            "bpy.data.meshes['Cube'].vertices[3].co.x = float('nan')\n",
         )
 
     def test_mistake_of_the_addon(self):
@@ -215,8 +243,6 @@ class Stopping(RenderTest):
         while not log.exists() or not log.read_text().endswith("\n"):
             self.assertLess(time.monotonic(), deadline, "the renderer never started")
             time.sleep(0.05)
-        import json
-
         return process, json.loads(log.read_text())["pid"]
 
     def wait_for_end(self, pid: int, seconds: float) -> None:

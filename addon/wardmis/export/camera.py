@@ -47,7 +47,9 @@ def export_camera(camera: Any, render: Any) -> CameraData:
     if camera is None:
         raise ExportError("the scene has no active camera; add one, or choose one in Scene Properties > Camera")
     if camera.type != "CAMERA":
-        raise ExportError(f"object '{camera.name}' is the active camera, but is no camera; choose a camera in Scene Properties")
+        raise ExportError(
+            f"object '{camera.name}' is the active camera, but is no camera; choose a camera in Scene Properties"
+        )
     data = camera.data
     if data.type not in {"PERSP", "ORTHO"}:
         raise ExportError(
@@ -57,7 +59,9 @@ def export_camera(camera: Any, render: Any) -> CameraData:
     matrix = np.array(camera.matrix_world)
     lengths = np.linalg.norm(matrix[:3, :3], axis=0)
     if not np.isfinite(matrix).all() or not lengths.all():
-        raise ExportError(f"camera '{camera.name}' has a scale of zero or a transform that is not finite; set its scale to 1")
+        raise ExportError(
+            f"camera '{camera.name}' has a scale of zero or a transform that is not finite; set its scale to 1"
+        )
     matrix[:3, :3] /= lengths
     result = CameraData(
         camera.name,

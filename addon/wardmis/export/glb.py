@@ -48,7 +48,9 @@ WRITE_STEP = 16 << 20
 MAX_BYTES = 2**32 - 1  # a GLB counts its bytes in 32 bits
 
 
-def write_glb(scene: SceneData, path: str | os.PathLike[str], check_cancelled: Callable[[], None] = lambda: None) -> None:
+def write_glb(
+    scene: SceneData, path: str | os.PathLike[str], check_cancelled: Callable[[], None] = lambda: None
+) -> None:
     """Writes `scene` to `path`, completely or not at all. OSError if that fails, ExportError if the scene is too large."""
     encoder = _Encoder()
     document = encoder.encode(scene)
@@ -148,7 +150,7 @@ class _Encoder:
             return self._accessor_of[key]
         data = np.ascontiguousarray(array)
         if role == "UV":
-            data = data * np.float32([1, -1]) + np.float32([0, 1])
+            data = data * np.array([1, -1], np.float32) + np.array([0, 1], np.float32)
         flat = data.reshape(-1) if role == "INDICES" else data
         target = {"INDICES": INDEX_BUFFER, "INSTANCES": None}.get(role, ARRAY_BUFFER)
         accessor: dict[str, Any] = {
@@ -201,12 +203,24 @@ class _Encoder:
 
     def _material(self, material: MaterialData) -> dict[str, Any]:
         extension: dict[str, Any] = {"variant": material.variant}
-        for key, value in (("diffuse", material.diffuse), ("specular", material.specular), ("emission", material.emission)):
+        for key, value in (
+            ("diffuse", material.diffuse),
+            ("specular", material.specular),
+            ("emission", material.emission),
+        ):
             if any(value.value):
                 extension[key] = _input(value)
         if "specular" in extension:
-            extension |= {"alphaX": _input(material.alpha_x), "alphaY": _input(material.alpha_y), "rotation": material.rotation}
-        return {"name": material.name, **self._core_material(material), "extensions": self._core_extensions(material, extension)}
+            extension |= {
+                "alphaX": _input(material.alpha_x),
+                "alphaY": _input(material.alpha_y),
+                "rotation": material.rotation,
+            }
+        return {
+            "name": material.name,
+            **self._core_material(material),
+            "extensions": self._core_extensions(material, extension),
+        }
 
     def _core_material(self, material: MaterialData) -> dict[str, Any]:
         """What other glTF viewers show: a metal where the specular part is larger, else a plastic."""
@@ -274,10 +288,14 @@ class _Encoder:
     def _instancing_node(self, mesh: int, name: str, hidden: frozenset[str], parts: dict[str, np.ndarray]) -> int:
         self.used.add(INSTANCING)
         self.required.add(INSTANCING)
-        attributes = {key: self._accessor(np.ascontiguousarray(value, np.float32), "INSTANCES") for key, value in parts.items()}
+        attributes = {
+            key: self._accessor(np.ascontiguousarray(value, np.float32), "INSTANCES") for key, value in parts.items()
+        }
         return self._node({"name": name, "mesh": mesh}, _visibility(hidden), {INSTANCING: {"attributes": attributes}})
 
-    def _node(self, node: dict[str, Any], extension: dict[str, Any] | None = None, others: dict[str, Any] | None = None) -> int:
+    def _node(
+        self, node: dict[str, Any], extension: dict[str, Any] | None = None, others: dict[str, Any] | None = None
+    ) -> int:
         extensions = dict(others or {})
         if extension:
             extensions[EXTENSION] = extension
@@ -370,7 +388,12 @@ def _input(value: ColorInput | ScalarInput) -> dict[str, Any]:
 
 
 def _light(light: LightData) -> dict[str, Any]:
-    result: dict[str, Any] = {"name": light.name, "type": light.type, "color": list(light.color), "shadow": light.shadow}
+    result: dict[str, Any] = {
+        "name": light.name,
+        "type": light.type,
+        "color": list(light.color),
+        "shadow": light.shadow,
+    }
     if light.type == "area":
         result |= {"shape": light.shape, "size": list(light.size), "radiance": light.emission, "spread": light.spread}
     elif light.type == "sun":

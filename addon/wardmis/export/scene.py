@@ -170,9 +170,13 @@ class _Gatherer:
         holdout = original.is_holdout or original.holdout_get(view_layer=self.view_layer)
         for flag, what in ((holdout, "holdouts"), (original.is_shadow_catcher, "shadow catchers")):
             if flag:
-                self.context.note(f"object '{original.name}': {what} are not supported; it is rendered as any other object")
+                self.context.note(
+                    f"object '{original.name}': {what} are not supported; it is rendered as any other object"
+                )
 
     def _note_hair(self, obj: Any) -> None:
         for system in obj.particle_systems:
             if system.settings.type == "HAIR" and system.settings.render_type == "PATH":
-                self.context.note(f"object '{obj.name}': the hair strands of '{system.name}' are not supported; they are left out")
+                self.context.note(
+                    f"object '{obj.name}': the hair strands of '{system.name}' are not supported; they are left out"
+                )

@@ -42,7 +42,9 @@ def _environment(node: Any, factor: float, world: Any, context: ExportContext) -
         r, g, b = MISSING
         return WorldData((r * factor, g * factor, b * factor))
     if node.projection != "EQUIRECTANGULAR":
-        context.note(f"{where}: the projection {node.projection.title()} is not supported; the image is read as equirectangular")
+        context.note(
+            f"{where}: the projection {node.projection.title()} is not supported; the image is read as equirectangular"
+        )
     texture = context.texture(node.image, node.interpolation, "REPEAT")
     return WorldData((factor, factor, factor), texture, _rotation(node, where, context))
 
@@ -58,14 +60,16 @@ def _rotation(node: Any, where: str, context: ExportContext) -> np.ndarray:
         matrix = _mapping_matrix(mapping, where, context)
         origin = source(mapping.inputs["Vector"])
     if origin is None or (origin.node.bl_idname, origin.name) != ("ShaderNodeTexCoord", "Generated"):
-        context.note(f"{where}: its vector must come from Texture Coordinate (Generated), by itself or through a Mapping; it is left out")
+        context.note(
+            f"{where}: its vector must come from Texture Coordinate (Generated), by itself or through a Mapping; it is left out"
+        )
         return np.eye(3)
     return matrix
 
 
 def _mapping_matrix(mapping: Any, where: str, context: ExportContext) -> np.ndarray:
     """The linear part of a Mapping node; an image of directions can be turned and mirrored, nothing else."""
-    values = {}
+    values: dict[str, Any] = {}
     for name in ("Location", "Rotation", "Scale"):
         socket = mapping.inputs.get(name)  # a Mapping of type Vector has no location
         if socket is not None and source(socket) is not None:
