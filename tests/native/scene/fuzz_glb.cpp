@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <cstring>
 
+#include "glb_builder.h"
 #include "math/error.h"
 #include "scene/glb.h"
-#include "scene/glb_builder.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace wardmis;

@@ -11,8 +11,8 @@
 #include <functional>
 #include <limits>
 
+#include "glb_builder.h"
 #include "math/error.h"
-#include "scene/glb_builder.h"
 
 namespace wardmis {
 namespace {
@@ -340,7 +340,8 @@ TEST(Glb, AppliesTextureTransforms) {
                      {{"KHR_texture_transform",
                        {{"offset", {0, 1}}, {"rotation", 1.5707963267948966}, {"scale", {0.5, 0.5}}}}}}}}}}});
   rawTexture<uint8_t>(b, 1, 1, 3, {1, 2, 3});
-  const float* m = read(b).materials[0].diffuse.texture.transform;
+  const Scene s = read(b);
+  const float* m = s.materials[0].diffuse.texture.transform;
   const auto at = [&](float u, float v) { return Vec3f{m[0] * u + m[1] * v + m[2], m[3] * u + m[4] * v + m[5], 0}; };
   // In v-up coordinates: the file's (0, 0), the upper left, goes to the lower left corner, (0, 0.5 down) and so on.
   expectNear(at(0, 1), {0, 0, 0});
