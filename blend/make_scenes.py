@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Makes the .blend files of this folder, always the same ones: blender --background --addons wardmis --python make_scenes.py
+
+Run it with the oldest Blender that they shall open in. Names of scenes after `--` make only those.
+"""
+
+import math
+import sys
+from pathlib import Path
+
+import addon_utils
+import bpy
+import numpy as np
+from mathutils import Vector
+
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parent / "addon")]
+
+from teapot_patches import tessellate  # noqa: E402
+
+
+def main():
+    names = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else []
+    addon_utils.enable("wardmis")
+    for name in names or SCENES:
+        make(name)
+        for screen in bpy.data.screens:
+            for area in screen.areas:
+                if area.type == "VIEW_3D":
+                    area.spaces.active.region_3d.view_perspective = "CAMERA"
+        bpy.ops.wm.save_as_mainfile(filepath=str(HERE / f"{name}.blend"), compress=True)
+
+
+def make(name):
+    """The scene in place of whatever is open."""
+    # the factory's file without its objects; unlike read_factory_settings this leaves add-ons and preferences alone
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    SCENES[name]()
+
+
+# ---- the scenes ----------------------------------------------------------------------------------------------------
+
+
+def teapot():
+    """The Utah teapot on a plane under the sky L = R cos(theta), R being the strength of the world's background."""
+    set_up(768, 512)
+    add_mesh("Teapot", *tessellate(24), ward("Glaze", (0.34, 0.2, 0.11), (0.5, 0.5, 0.5), 0.12, "ward"), smooth=True)
+    add_mesh("Ground", *square(60), ward("Ground", (0.5, 0.5, 0.5), (0, 0, 0), 0.3, "ward"))
+    add_camera((2.9, -11.2, 5.6), (0.2, 0, 1.38), 35)
+    world = empty_world()
+    texture = world.nodes.new("ShaderNodeTexEnvironment")
+    texture.image = cosine_sky()
+    world.links.new(texture.outputs["Color"], world.nodes["Background"].inputs["Color"])
+
+
+def veach():
+    """Veach's scene for multiple importance sampling: round lights of equal power, and plates of one material."""
+    veach_scene([0.03] * 4)
+
+
+def veach_glossiness():
+    """The same with his plates of increasing roughness, the smoothest at the back."""
+    veach_scene([0.005, 0.02, 0.05, 0.12])
+
+
+def furnace():
+    """Two spheres that see nothing but a sky of radiance 1: the diffuse one of albedo 1/2 must look 1/2 everywhere."""
+    set_up(512, 256)
+    diffuse = bpy.data.materials.new("Half")
+    diffuse.use_nodes = True
+    diffuse.node_tree.nodes.clear()
+    node = diffuse.node_tree.nodes.new("ShaderNodeBsdfDiffuse")
+    node.inputs["Color"].default_value = (0.5, 0.5, 0.5, 1)
+    connect(diffuse, node)
+    glossy = ward("Ward", (0.3, 0.3, 0.3), (0.5, 0.5, 0.5), 0.1, "ward-gmd")
+    for x, name, material in ((-1.25, "Ward", glossy), (1.25, "Diffuse", diffuse)):
+        # flat faces: a shading normal that differs from the surface's own would hide a part of the sky
+        sphere = add_mesh(name, *sphere_mesh(128, 64), material)
+        sphere.location.x = x
+        sphere.visible_diffuse = sphere.visible_glossy = sphere.visible_shadow = False
+        sphere.visible_transmission = sphere.visible_volume_scatter = False
+    camera = add_camera((0, -10, 0), (0, 0, 0), 50)
+    camera.data.type, camera.data.ortho_scale = "ORTHO", 5
+    empty_world()
+
+
+SCENES = {"teapot": teapot, "veach": veach, "veach-glossiness": veach_glossiness, "furnace": furnace}
+
+# Veach's plates from the back to the front: (height, depth) of the upper and of the lower edge
+PLATES = (
+    ((-2.70651, -0.25609), (-2.08375, 0.526323)),
+    ((-3.28825, -1.36972), (-2.83856, -0.476536)),
+    ((-3.73096, -2.70046), (-3.43378, -1.74564)),
+    ((-3.99615, -4.0667), (-3.82069, -3.08221)),
+)
+LIGHTS = ((-3.75, 1 / 30), (-1.25, 0.1), (1.25, 0.3), (3.75, 0.9))  # x, radius
+LIGHT_POWER = 60.0  # W, of each
+
+
+def veach_scene(alphas):
+    set_up(768, 512)
+    for number, (((z0, y0), (z1, y1)), alpha) in enumerate(zip(PLATES, alphas), 1):
+        material = ward(f"Plate {number}", (0.07, 0.09, 0.13), (0.5, 0.5, 0.5), alpha, "ward")
+        add_mesh(f"Plate {number}", [(-4, y0, z0), (4, y0, z0), (4, y1, z1), (-4, y1, z1)], [(0, 1, 2, 3)], material)
+    room = ward("Room", (0.4, 0.4, 0.4), (0, 0, 0), 0.3, "ward")
+    floor = -4.14615
+    add_mesh("Floor", [(-10, -10, floor), (10, -10, floor), (10, 10, floor), (-10, 10, floor)], [(0, 1, 2, 3)], room)
+    add_mesh("Wall", [(-10, 2, floor), (10, 2, floor), (10, 2, 15), (-10, 2, 15)], [(0, 1, 2, 3)], room)
+    for x, radius in LIGHTS:
+        data = bpy.data.lights.new(f"Light {radius:.2f}", "POINT")
+        data.energy, data.shadow_soft_size = LIGHT_POWER, radius
+        light = bpy.data.objects.new(data.name, data)
+        light.location = x, 0, 0
+        light.visible_camera = True  # new lights are not
+        bpy.context.collection.objects.link(light)
+    add_camera((0, -15, 2), (0, 0, -2.5), 42)
+    empty_world().nodes["Background"].inputs["Strength"].default_value = 0.0
+
+
+# ---- their parts ---------------------------------------------------------------------------------------------------
+
+
+def set_up(width, height):
+    """The render settings: WardMIS, and Cycles without anything that would trade bias for less noise."""
+    scene = bpy.context.scene
+    render, cycles = scene.render, scene.cycles
+    render.engine = "WARDMIS"
+    render.resolution_x, render.resolution_y, render.resolution_percentage = width, height, 100
+    scene.view_settings.view_transform = "Standard"
+    cycles.samples = 64
+    cycles.use_adaptive_sampling = cycles.use_denoising = False
+    cycles.sample_clamp_direct = cycles.sample_clamp_indirect = cycles.light_sampling_threshold = cycles.blur_glossy = 0
+    cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = 7  # as WardMIS' eight surface hits
+
+
+def add_mesh(name, vertices, faces, material, smooth=False):
+    mesh = bpy.data.meshes.new(name)
+    # at a pole a face names one vertex twice
+    mesh.from_pydata(np.asarray(vertices).tolist(), [], [list(dict.fromkeys(face)) for face in np.asarray(faces).tolist()])
+    mesh.validate()
+    mesh.polygons.foreach_set("use_smooth", [smooth] * len(mesh.polygons))
+    mesh.materials.append(material)
+    obj = bpy.data.objects.new(name, mesh)
+    bpy.context.collection.objects.link(obj)
+    return obj
+
+
+def square(half):
+    return [(-half, -half, 0), (half, -half, 0), (half, half, 0), (-half, half, 0)], [(0, 1, 2, 3)]
+
+
+def sphere_mesh(segments, rings):
+    """Of radius 1: a grid over longitude and latitude, welded at its seam and poles."""
+    theta = np.linspace(0, math.pi, rings + 1)[:, None]
+    phi = np.linspace(0, 2 * math.pi, segments, endpoint=False)
+    x, y, z = np.broadcast_arrays(np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta))
+    index = np.arange(x.size).reshape(x.shape)
+    index[0], index[-1] = index[0, 0], index[-1, 0]
+    right = np.roll(index, -1, axis=1)
+    quads = np.stack([index[:-1], index[1:], right[1:], right[:-1]], axis=-1).reshape(-1, 4)
+    used, quads = np.unique(quads, return_inverse=True)
+    return np.stack([x, y, z], axis=-1).reshape(-1, 3)[used], quads.reshape(-1, 4)
+
+
+def ward(name, diffuse, specular, alpha, variant):
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    material.node_tree.nodes.clear()
+    node = material.node_tree.nodes.new("WardBSDFNode")
+    node.inputs["Diffuse Color"].default_value = (*diffuse, 1)
+    node.inputs["Specular Color"].default_value = (*specular, 1)
+    node.inputs["Alpha X"].default_value = node.inputs["Alpha Y"].default_value = alpha
+    node.variant = variant
+    connect(material, node)
+    return material
+
+
+def connect(material, node):
+    output = material.node_tree.nodes.new("ShaderNodeOutputMaterial")
+    output.location.x = 250
+    material.node_tree.links.new(node.outputs[0], output.inputs["Surface"])
+
+
+def add_camera(location, target, degrees):
+    """A camera with this horizontal angle that looks at `target`."""
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera.location = location
+    camera.rotation_euler = (Vector(target) - Vector(location)).to_track_quat("-Z", "Y").to_euler()
+    camera.data.angle = math.radians(degrees)
+    bpy.context.collection.objects.link(camera)
+    bpy.context.scene.camera = camera
+    return camera
+
+
+def empty_world():
+    """A white sky of radiance 1; returns its node tree."""
+    world = bpy.data.worlds.new("World")
+    world.use_nodes = True
+    world.node_tree.nodes["Background"].inputs["Color"].default_value = (1, 1, 1, 1)
+    bpy.context.scene.world = world
+    return world.node_tree
+
+
+def cosine_sky():
+    """cos(theta) above the horizon, 0 below it, as an equirectangular EXR: beside the .blend files, and packed in them."""
+    height = 256
+    theta = (np.arange(height) + 0.5) / height * math.pi - math.pi / 2  # from straight down, the bottom row
+    column = np.maximum(np.sin(theta), 0.0)
+    pixels = np.ones((height, 2 * height, 4), np.float32)
+    pixels[..., :3] = column[:, None, None]
+    image = bpy.data.images.new("cosine-sky", 2 * height, height, float_buffer=True)
+    image.pixels.foreach_set(pixels.ravel())
+    settings = bpy.context.scene.render.image_settings
+    settings.file_format, settings.color_mode, settings.color_depth, settings.exr_codec = "OPEN_EXR", "RGB", "32", "ZIP"
+    image.save_render(str(HERE / "cosine-sky.exr"))
+    settings.file_format = "PNG"
+    bpy.data.images.remove(image)
+    image = bpy.data.images.load(str(HERE / "cosine-sky.exr"))
+    image.filepath = "//cosine-sky.exr"
+    image.pack()
+    return image
+
+
+if __name__ == "__main__":
+    main()
