@@ -216,8 +216,8 @@ def cosine_sky():
     settings.file_format = "PNG"
     bpy.data.images.remove(image)
     image = bpy.data.images.load(str(HERE / "cosine-sky.exr"))
-    image.filepath = "//cosine-sky.exr"
     image.pack()
+    image.filepath = image.packed_files[0].filepath = "//cosine-sky.exr"
     return image
 
 
