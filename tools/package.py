@@ -74,8 +74,8 @@ def add_renderer(folder: Path, binary: Path) -> None:
             shutil.copy(terms, folder / "licences" / f"{terms.parent.name}.txt")
     for file in own:
         origin = "$ORIGIN/lib" if file.parent == folder else "$ORIGIN"
-        subprocess.run(["patchelf", "--set-rpath", origin, str(file)], check=True)
         subprocess.run(["strip", "--strip-unneeded", str(file)], check=True)
+        subprocess.run(["patchelf", "--set-rpath", origin, str(file)], check=True)
 
 
 def add_on_files() -> list[Path]:
