@@ -46,7 +46,7 @@ class Budget {
   }
 
  private:
-  uint64_t left_ = uint64_t(1) << 29;  // room for small files that use the same data many times
+  uint64_t left_ = uint64_t(1) << 28;  // room for small files that use the same data many times
 };
 
 // `buffers`, `bufferViews` and `uri`s of a file.

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "scene/glb_light.h"
@@ -34,7 +35,8 @@ Affine localMatrix(const Json& node) {
     if (translation || rotation || scale)
       node.fail("has both a matrix and translation, rotation or scale", kExportAgain);
     const auto m = matrix->numbers<16>();
-    if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1) matrix->fail("its last row is not 0 0 0 1", kExportAgain);
+    const float off = std::max({std::fabs(m[3]), std::fabs(m[7]), std::fabs(m[11]), std::fabs(m[15] - 1)});
+    if (off > 1e-5f) matrix->fail("its last row is not 0 0 0 1", kExportAgain);
     return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
   }
   return affine(translation ? translation->vec3() : Vec3f{0, 0, 0},

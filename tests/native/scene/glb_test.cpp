@@ -524,7 +524,7 @@ TEST(Glb, RefusesHostileScenes) {
   };
   const auto light = [](json value) {
     return [value](GlbBuilder& b) {
-      b.extension() = {{"version", 1}, {"lights", {value}}};
+      b.extension() = {{"version", 1}, {"lights", json::array({value})}};
       b.root["nodes"][0]["extensions"]["WARDMIS_scene"]["light"] = 0;
     };
   };
@@ -546,7 +546,7 @@ TEST(Glb, RefusesHostileScenes) {
     return [value](GlbBuilder& b) {
       primitive(b)["material"] = b.add("materials", ward({{"diffuse", {{"texture", {{"index", 0}}}}}}));
       b.root["textures"] = {{{"source", 0}}};
-      b.root["images"] = {value};
+      b.root["images"] = json::array({value});
     };
   };
 
@@ -665,7 +665,7 @@ TEST(Glb, RefusesHostileScenes) {
        }},
       // buffers and uris
       {"buffers[0]: claims 99999 bytes", [](GlbBuilder& b) { b.root["buffers"] = {{{"byteLength", 99999}}}; }},
-      {"buffers[0]: 'byteLength' is missing", [](GlbBuilder& b) { b.root["buffers"] = {json::object()}; }},
+      {"buffers[0]: 'byteLength' is missing", [](GlbBuilder& b) { b.root["buffers"] = json::array({json::object()}); }},
       {"buffers[1]: has no uri, and the file has no binary chunk for it",
        [](GlbBuilder& b) {
          b.root["buffers"] = {{{"byteLength", 4}}, {{"byteLength", 4}}};
