@@ -23,6 +23,11 @@ constexpr uint32_t combine(uint32_t key, uint32_t value) { return mix(key ^ (val
 // Bits to [0, 1): a multiple of 2^-24, so that 1 - u is exact.
 constexpr float toUnit(uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
 
+// The point of a jittered cell; (cell + jitter) may round up to the next cell, but never to 1.
+constexpr float inCell(uint32_t cell, float jitter, uint32_t cells) {
+  return std::min((static_cast<float>(cell) + jitter) / static_cast<float>(cells), 0x1.fffffep-1f);
+}
+
 constexpr uint32_t reverseBits(uint32_t x) {
 #if defined(__clang__)
   return __builtin_bitreverse32(x);
@@ -82,8 +87,7 @@ class Sampler {
     // jittered cells in random order; a new order for each block
     const uint32_t cells = columns_ * rows_;
     const uint32_t cell = permute(index % cells, cells, combine(key ^ 0x02e5be93u, index / cells));
-    return {(static_cast<float>(cell % columns_) + jitter.x) / static_cast<float>(columns_),
-            std::min((static_cast<float>(cell / columns_) + jitter.y) / static_cast<float>(rows_), 0x1.fffffep-1f)};
+    return {inCell(cell % columns_, jitter.x, columns_), inCell(cell / columns_, jitter.y, rows_)};
   }
 
   float get1D(uint32_t pixelKey, uint32_t dimension, uint32_t index) const {
@@ -95,10 +99,11 @@ class Sampler {
     const float jitter = toUnit(combine(key, index));
     if (type_ == SamplerType::kIndependent) return jitter;
     const uint32_t cell = permute(index % block_, block_, combine(key ^ 0x02e5be93u, index / block_));
-    return std::min((static_cast<float>(cell) + jitter) / static_cast<float>(block_), 0x1.fffffep-1f);
+    return inCell(cell, jitter, block_);
   }
 
-  // A random permutation of 0..n-1, evaluated at i (Kensler 2013, "Correlated multi-jittered sampling", listing 3).
+  // A random permutation of 0..n-1, evaluated at i (Kensler 2013, "Correlated multi-jittered sampling", listing 3; there
+  // i + p may pass 2^32, and then two images coincide).
   static uint32_t permute(uint32_t i, uint32_t n, uint32_t p) {
     uint32_t w = n - 1;
     w |= w >> 1;
@@ -126,7 +131,7 @@ class Sampler {
       i &= w;
       i ^= i >> 5;
     } while (i >= n);
-    return (i + p) % n;
+    return (i + p % n) % n;
   }
 
  private:

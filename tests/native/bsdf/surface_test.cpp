@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bsdf/surface.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "reference.h"
+#include "statistics.h"
+
+namespace wardmis {
+namespace {
+
+using namespace test;
+
+template <class T>
+class Surfaces : public testing::Test {};
+using FloatAndDouble = testing::Types<float, double>;
+TYPED_TEST_SUITE(Surfaces, FloatAndDouble);
+
+// The vectorised loop says what the scalar function says, for every batch size, above and below the horizon.
+TYPED_TEST(Surfaces, BatchEqualsScalar) {
+  using T = TypeParam;
+  constexpr int kCapacity = 37;
+  Random random(1);
+  for (int round = 0; round < 300; ++round)
+    for (const Variant& v : kVariants) {
+      Surface s;
+      s.variant = v.type;
+      s.ax = static_cast<float>(random.logUniform(0.02, 2)), s.ay = static_cast<float>(random.logUniform(0.02, 2));
+      const Vec3<double> o = round % 10 == 0 ? random.direction() : random.above();  // also from below
+      const Vec3<T> wo{T(o.x), T(o.y), T(o.z)};
+      Batch<T, kCapacity> batch;
+      const int n = random.integer(0, kCapacity);
+      for (int j = 0; j < kCapacity; ++j) {
+        const Vec3<double> i = random.direction();
+        batch.set(j,
+                  j % 5 == 0 ? wardSample(wo, T(s.ax), T(s.ay), random.square<T>()) : Vec3<T>{T(i.x), T(i.y), T(i.z)});
+        batch.specular[j] = batch.lobe[j] = T(-7);
+      }
+      evaluate(s, wo, batch, n);
+      for (int j = 0; j < kCapacity; ++j) {
+        if (j >= n) {
+          EXPECT_TRUE(batch.specular[j] == T(-7) && batch.lobe[j] == T(-7)) << "written past n";
+          continue;
+        }
+        const Vec3<T> wi = batch.wi(j);
+        const WardValue<T> w = ward(v.type, wi, wo, T(s.ax), T(s.ay));
+        // the compiler may contract the two loops differently: to rounding, which E multiplies
+        const double e = double(reference(v.type, wi, wo, T(s.ax), T(s.ay)).e);
+        const double tolerance = 4 * (4 + 2 * e) * double(std::numeric_limits<T>::epsilon());
+        const double tiny = 1e3 * double(std::numeric_limits<T>::min());
+        EXPECT_NEAR(double(batch.specular[j]), double(w.fCos), tolerance * double(w.fCos) + tiny);
+        EXPECT_NEAR(double(batch.lobe[j]), double(w.pdf), tolerance * double(w.pdf) + tiny);
+        if (wi.z <= 0 || wo.z <= 0) {
+          EXPECT_EQ(batch.specular[j], 0);
+          EXPECT_EQ(batch.lobe[j], 0);
+        }
+        const WardValue<T> single = evaluateWard(s, wi, wo);
+        EXPECT_NEAR(double(single.fCos), double(w.fCos), tolerance * double(w.fCos) + tiny);
+        EXPECT_NEAR(double(single.pdf), double(w.pdf), tolerance * double(w.pdf) + tiny);
+      }
+    }
+}
+
+TEST(Surface, KnowsItsParts) {
+  Surface s;
+  EXPECT_FALSE(s.hasDiffuse() || s.hasSpecular());
+  s.diffuse = {0, 0, 0.1f};
+  s.specular = {0.1f, 0, 0};
+  EXPECT_TRUE(s.hasDiffuse() && s.hasSpecular());
+  EXPECT_FALSE(s.needsDouble());
+  s.ay = 1e-3f;
+  EXPECT_TRUE(s.needsDouble());
+}
+
+// Why needsDouble() draws the line where it does: above it, the rounding of a float direction (half an ulp of a unit
+// vector's components) moves ln pdf of a sampled direction by a few per cent at most, outside grazing angles.
+TEST(Surface, FloatDirectionsSufficeAboveTheLine) {
+  Random random(2);
+  const double alpha = 2e-3;
+  for (int i = 0; i < 20000; ++i) {
+    const double theta = random.uniform(0, 1.4), phi = random.uniform(0, 7);
+    const Vec3<double> wo{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+    const Vec3<double> wi = wardSample(wo, alpha, alpha, random.square());
+    const auto rounded = [](Vec3<double> d) {
+      return Vec3f{static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)};
+    };
+    const double exact = ward(WardVariant::kWardGmd, wi, wo, alpha, alpha).pdf;
+    const double got = double(ward(WardVariant::kWardGmd, rounded(wi), rounded(wo), 2e-3f, 2e-3f).pdf);
+    if (wi.z > 0.1) {
+      EXPECT_NEAR(got / exact, 1, 0.01);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace wardmis
