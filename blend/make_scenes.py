@@ -136,7 +136,9 @@ def set_up(width, height):
 def add_mesh(name, vertices, faces, material, smooth=False):
     mesh = bpy.data.meshes.new(name)
     # at a pole a face names one vertex twice
-    mesh.from_pydata(np.asarray(vertices).tolist(), [], [list(dict.fromkeys(face)) for face in np.asarray(faces).tolist()])
+    mesh.from_pydata(
+        np.asarray(vertices).tolist(), [], [list(dict.fromkeys(face)) for face in np.asarray(faces).tolist()]
+    )
     mesh.validate()
     mesh.polygons.foreach_set("use_smooth", [smooth] * len(mesh.polygons))
     mesh.materials.append(material)

@@ -4,6 +4,7 @@
 Most of it is turned about the z axis: a curve of (radius, height) stands for its four quarters. Handle and spout are
 given for y <= 0, each row from the inner to the outer side, and mirrored.
 """
+
 import numpy as np
 
 ARC = 0.56  # of the radius: the length of the control arms of Newell's quarter circles

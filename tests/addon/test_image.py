@@ -39,7 +39,12 @@ class Images(unittest.TestCase):
             return loaded, file.read()
 
     def test_files_that_the_renderer_reads_are_handed_on_byte_for_byte(self):
-        cases = (("PNG", False, "image/png"), ("JPEG", False, "image/jpeg"), ("OPEN_EXR", True, "image/x-exr"), ("HDR", True, "image/vnd.radiance"))
+        cases = (
+            ("PNG", False, "image/png"),
+            ("JPEG", False, "image/jpeg"),
+            ("OPEN_EXR", True, "image/x-exr"),
+            ("HDR", True, "image/vnd.radiance"),
+        )
         for file_format, is_float, mime_type in cases:
             with self.subTest(file_format):
                 image, content = self.file(file_format, is_float)

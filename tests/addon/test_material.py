@@ -101,7 +101,9 @@ class Shaders(MaterialCase):
 
     def test_anisotropy_as_in_cycles(self):
         for anisotropy, expected in ((0.5, (0.045, 0.18)), (-0.5, (0.18, 0.045))):
-            data = self.export(self.node("ShaderNodeBsdfAnisotropic", Roughness=0.3, Anisotropy=anisotropy, Rotation=0.5))
+            data = self.export(
+                self.node("ShaderNodeBsdfAnisotropic", Roughness=0.3, Anisotropy=anisotropy, Rotation=0.5)
+            )
             self.assertRgb((data.alpha_x.value, data.alpha_y.value), expected)
             self.assertAlmostEqual(data.rotation, math.pi)
 
@@ -176,7 +178,12 @@ class Shaders(MaterialCase):
 class NotUnderstood(MaterialCase):
     def test_unsupported_shader_is_magenta_and_named(self):
         self.node("ShaderNodeRGB")
-        for kind in ("ShaderNodeBsdfGlass", "ShaderNodeHoldout", "ShaderNodeBsdfTransparent", "ShaderNodeSubsurfaceScattering"):
+        for kind in (
+            "ShaderNodeBsdfGlass",
+            "ShaderNodeHoldout",
+            "ShaderNodeBsdfTransparent",
+            "ShaderNodeSubsurfaceScattering",
+        ):
             with self.subTest(kind):
                 self.tree.nodes.remove(self.tree.nodes[-1])
                 node = self.node(kind)
@@ -234,7 +241,12 @@ class Trees(MaterialCase):
         diffuse, reroute = group.nodes.new("ShaderNodeBsdfDiffuse"), group.nodes.new("NodeReroute")
         gamma = self.node("ShaderNodeGamma", group, Gamma=3.0)
         gamma.mute = True
-        for source, target, key in ((given, gamma, "Color"), (gamma, reroute, 0), (reroute, diffuse, "Color"), (diffuse, result, 0)):
+        for source, target, key in (
+            (given, gamma, "Color"),
+            (gamma, reroute, 0),
+            (reroute, diffuse, "Color"),
+            (diffuse, result, 0),
+        ):
             self.link(source, target, key)
         first, second = (self.tree.nodes.new("ShaderNodeGroup") for _ in range(2))
         first.node_tree = second.node_tree = group
@@ -248,7 +260,10 @@ class Trees(MaterialCase):
         self.assertEqual(self.context.notes, [])
 
     def test_muted_link_and_muted_shader_are_black(self):
-        mix, diffuse = self.node("ShaderNodeMixShader", i0=0.5), self.node("ShaderNodeBsdfDiffuse", Color=(0.4, 0.4, 0.4, 1))
+        mix, diffuse = (
+            self.node("ShaderNodeMixShader", i0=0.5),
+            self.node("ShaderNodeBsdfDiffuse", Color=(0.4, 0.4, 0.4, 1)),
+        )
         emission = self.node("ShaderNodeEmission")
         emission.mute = True
         self.link(diffuse, mix, 1)
@@ -281,7 +296,13 @@ class Values(MaterialCase):
 
     def test_math_of_constants(self):
         node = self.node("ShaderNodeMath", i0=0.5, i1=0.25)
-        for operation, expected in (("ADD", 0.75), ("SUBTRACT", 0.25), ("MULTIPLY", 0.125), ("DIVIDE", 2.0), ("POWER", 0.5**0.25)):
+        for operation, expected in (
+            ("ADD", 0.75),
+            ("SUBTRACT", 0.25),
+            ("MULTIPLY", 0.125),
+            ("DIVIDE", 2.0),
+            ("POWER", 0.5**0.25),
+        ):
             node.operation = operation
             self.assertRgb(self.of(node).value, [expected] * 3)
         node.operation, node.inputs[1].default_value = "DIVIDE", 0.0
@@ -298,7 +319,9 @@ class Values(MaterialCase):
         for socket, value in zip(enabled, (0.5, (1, 0, 0, 1), (0, 0, 1, 1))):
             socket.default_value = value
         self.assertRgb(self.of(new_mix, [o.enabled for o in new_mix.outputs].index(True)).value, (0.5, 0, 0.5))
-        self.assertRgb(self.of(self.node("ShaderNodeGamma", Color=(0.5, 0.25, 1, 1), Gamma=2.0)).value, (0.25, 0.0625, 1))
+        self.assertRgb(
+            self.of(self.node("ShaderNodeGamma", Color=(0.5, 0.25, 1, 1), Gamma=2.0)).value, (0.25, 0.0625, 1)
+        )
         self.assertRgb(self.of(self.node("ShaderNodeInvert", Color=(0.2, 0.3, 0.4, 1))).value, (0.8, 0.7, 0.6))
         separate = self.node("ShaderNodeSeparateColor", i0=(0.1, 0.2, 0.3, 1))
         self.assertRgb(self.of(separate, 1).value, (0.2, 0.2, 0.2))

@@ -116,9 +116,7 @@ def _add_specular(use: NodeUse, a: Surface, b: Surface) -> Surface:
     def mean(x: Value, y: Value) -> Value:
         return calc.add(calc.multiply(x, constant(1.0 - share)), calc.multiply(y, constant(share)))
 
-    return replace(
-        stronger, specular=specular, alpha_x=mean(a.alpha_x, b.alpha_x), alpha_y=mean(a.alpha_y, b.alpha_y)
-    )
+    return replace(stronger, specular=specular, alpha_x=mean(a.alpha_x, b.alpha_x), alpha_y=mean(a.alpha_y, b.alpha_y))
 
 
 def _shape(s: Surface) -> tuple[Any, ...]:

@@ -216,7 +216,7 @@ def _mapping(use: NodeUse) -> Matrix:
     return matrix.inverted_safe() if kind == "TEXTURE" else matrix
 
 
-MATH = {
+MATH: dict[str, Function] = {
     "ADD": np.add,
     "SUBTRACT": np.subtract,
     "MULTIPLY": np.multiply,
@@ -241,7 +241,7 @@ def _math(use: NodeUse, _output: Any) -> Value | None:
     return calculator(use).apply("clamp", _clamp, value) if use.node.use_clamp else value
 
 
-BLENDS = {
+BLENDS: dict[str, Function] = {
     "MIX": lambda a, b: b,
     "ADD": np.add,
     "SUBTRACT": np.subtract,
@@ -312,7 +312,9 @@ def _separate(use: NodeUse, output: Any) -> Value | None:
     if getattr(use.node, "mode", "RGB") != "RGB":
         return None
     channel = list(use.node.outputs).index(output)
-    return calculator(use).apply(f"channel {channel}", lambda c: np.repeat(c[..., channel, None], 3, axis=-1), read(use, 0))
+    return calculator(use).apply(
+        f"channel {channel}", lambda c: np.repeat(c[..., channel, None], 3, axis=-1), read(use, 0)
+    )
 
 
 def _combine(use: NodeUse, _output: Any) -> Value | None:
