@@ -8,6 +8,7 @@ from typing import Any
 
 import bpy
 
+from . import compat
 from .engine import WARDMIS_RenderEngine
 from .properties import ALLOCATIONS_WITH_PILOT
 
@@ -22,6 +23,7 @@ EXCLUDED = {
     "DATA_PT_spot",
     "NODE_DATA_PT_light",
     "NODE_DATA_PT_spot",
+    "RENDER_PT_gpencil",
     "RENDER_PT_stereoscopy",
 }
 EXCLUDED_PREFIXES = ("RENDER_PT_freestyle", "VIEWLAYER_PT_freestyle", "MATERIAL_PT_freestyle")
@@ -118,6 +120,18 @@ class WARDMIS_RENDER_PT_performance(_RenderPanel, bpy.types.Panel):
         self._column().prop(context.scene.wardmis, "threads")
 
 
+class WARDMIS_VIEWLAYER_PT_override(_Panel, bpy.types.Panel):
+    bl_label = "Override"
+    bl_context = "view_layer"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: Any) -> None:
+        column = self._column()
+        column.prop(context.view_layer, "material_override")
+        if hasattr(context.view_layer, "world_override"):  # came with a later version of Blender
+            column.prop(context.view_layer, "world_override")
+
+
 class WARDMIS_OBJECT_PT_ray_visibility(_Panel, bpy.types.Panel):
     bl_label = "Ray Visibility"
     bl_context = "object"
@@ -147,8 +161,11 @@ class WARDMIS_LIGHT_PT_light(_Panel, bpy.types.Panel):
         # the setting that the export reads: see compat.light_casts_shadow
         own = getattr(light, "cycles", None)
         column.prop(*((own, "cast_shadow") if hasattr(own, "cast_shadow") else (light, "use_shadow")))
-        if hasattr(light, "use_nodes"):
-            column.prop(light, "use_nodes")
+        column.prop(light, "use_nodes")
+        if compat.uses_nodes(light):
+            output = light.node_tree.get_output_node("CYCLES")
+            if output is not None:
+                self.layout.template_node_view(light.node_tree, output, output.inputs["Surface"])
 
 
 def _light_settings(light: Any) -> Iterator[str]:
@@ -176,6 +193,7 @@ _CLASSES = (
     WARDMIS_RENDER_PT_light_paths,
     WARDMIS_RENDER_PT_film,
     WARDMIS_RENDER_PT_performance,
+    WARDMIS_VIEWLAYER_PT_override,
     WARDMIS_OBJECT_PT_ray_visibility,
     WARDMIS_LIGHT_PT_light,
 )

@@ -19,7 +19,7 @@ from pathlib import Path
 
 MODES = {
     "good": "renders",
-    "slow": "renders for ten seconds",
+    "slow": "renders for a minute",
     "crash": "dies of a segmentation fault after the first preview",
     "hang": "says nothing more after its start, and ignores SIGTERM",
     "exit3": "fails with a message",
@@ -114,7 +114,7 @@ def render(options, film, mode):
     if mode == "hang":
         signal.signal(signal.SIGTERM, signal.SIG_IGN)
         time.sleep(600)
-    steps = 100 if mode == "slow" else 2
+    steps = 600 if mode == "slow" else 2
     for step in range(1, steps + 1):
         time.sleep(0.1 if mode == "slow" else 0.01)
         say(
