@@ -216,7 +216,7 @@ Array<T> Accessors::read(const Json& use) {
                          v.normalized ? " (normalized)" : ""),
              kExportAgain);
   buffers_.budget.charge(v.count * sizeof(T), use);
-  const Array<T> out = convert<T>(v);
+  Array<T> out = convert<T>(v);
   if constexpr (!kIsIndex<T>) {
     const size_t bad = firstNotFinite(out.data);
     if (bad < out.size())

@@ -205,7 +205,7 @@ Bytes Buffers::uri(const Json& json) {
   if (error) json.fail(fmt::format("'{}' cannot be read: {}", cleaned(*relative), error.message()), kHint);
   if (std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first != folder.end()) refuse();
   try {
-    const Bytes bytes = mapFile(file);
+    Bytes bytes = mapFile(file);
     grow(bytes.size());
     return bytes;
   } catch (const Error& e) {

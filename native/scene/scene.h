@@ -158,7 +158,7 @@ struct Scene {
   std::string path;
   std::vector<Image> images;
   std::vector<Texture> textures;
-  std::vector<Material> materials;  // never empty once something is rendered: index 0 stands in for "no material"
+  std::vector<Material> materials;  // in order of first use; one stands in for "no material"
   std::vector<Mesh> meshes;
   std::vector<Instance> instances;
   std::vector<Light> lights;

@@ -11,7 +11,7 @@
 #include "math/error.h"
 #include "scene/glb.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {  // NOLINT(readability-identifier-naming)
   using namespace wardmis;
   // A file as it is; or else its JSON, a zero byte and its binary chunk, so that the fuzzer need not learn the lengths.
   test::Bytes file;
