@@ -8,7 +8,9 @@ from types import SimpleNamespace
 
 import bpy
 import numpy as np
+from wardmis.export.context import ExportContext
 from wardmis.export.image import deviations, export_image, missing, texels
+from wardmis.export.world import export_world
 
 LINEAR = "Linear" if bpy.app.version < (4, 0, 0) else "Linear Rec.709"
 
@@ -117,5 +119,22 @@ class Images(unittest.TestCase):
         self.assertIn("1001", deviations(tiled)[0])
 
     def test_render_result_cannot_be_a_texture(self):
-        viewer = SimpleNamespace(type="RENDER_RESULT", source="VIEWER")  # Blender makes them by rendering alone
+        viewer = SimpleNamespace(
+            name="Render Result", type="RENDER_RESULT", source="VIEWER"
+        )  # Blender makes them by rendering alone
         self.assertIn("result", missing(viewer))
+
+
+class World(unittest.TestCase):
+    def test_missing_image_of_the_sky_is_named_and_magenta(self):
+        world = bpy.data.worlds.new("W")
+        self.addCleanup(lambda: bpy.data.worlds.remove(world))
+        world.use_nodes = True
+        node = world.node_tree.nodes.new("ShaderNodeTexEnvironment")
+        world.node_tree.links.new(node.outputs[0], world.node_tree.nodes["Background"].inputs["Color"])
+        node.image = bpy.data.images.new("Sky", 1, 1)
+        self.addCleanup(lambda: bpy.data.images.remove(bpy.data.images["Sky"]))
+        node.image.source, node.image.filepath = "FILE", "/nowhere/sky.exr"
+        context = ExportContext(export_image)
+        self.assertEqual(export_world(world, context).radiance, (1, 0, 1))
+        self.assertIn("/nowhere/sky.exr", context.notes[0])

@@ -51,7 +51,12 @@ def export_image(image: Any) -> ImageData:
 
 
 def missing(image: Any) -> str | None:
-    """Why there are no pixels, or None."""
+    """Why there are no pixels, naming the image and its file, or None."""
+    reason = _reason_missing(image)
+    return f"image '{image.name}' cannot be shown: {reason}" if reason else None
+
+
+def _reason_missing(image: Any) -> str | None:
     if image.type == "MULTILAYER":
         return "a multi-layer EXR cannot be read as a texture; save the layer as an image of its own"
     if image.source == "VIEWER":
@@ -64,7 +69,7 @@ def missing(image: Any) -> str | None:
 
 
 def deviations(image: Any) -> list[str]:
-    """What is rendered other than Blender shows it."""
+    """What is rendered other than Blender shows it, naming the image."""
     found = []
     space = image.colorspace_settings.name
     if space not in COLOR_SPACES and not image.is_float:
@@ -73,7 +78,7 @@ def deviations(image: Any) -> list[str]:
         found.append(f"UDIM tiles are not supported; tile {image.tiles[0].number} is used everywhere")
     if image.source in MOVING:
         found.append("movies and sequences are not supported; the picture that Blender holds now is used")
-    return found
+    return [f"image '{image.name}': {deviation}" for deviation in found]
 
 
 def texels(image: Any) -> np.ndarray:

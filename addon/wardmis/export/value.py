@@ -178,10 +178,10 @@ def _image_texture(use: NodeUse, output: Any) -> Value | None:
         use.note("has no image; magenta is shown instead")
         return constant(MISSING)
     if reason := missing(image):
-        use.note(f"cannot show image '{image.name}', {reason}; magenta is shown instead")
+        use.note(f"needs an image; {reason}; magenta is shown instead")
         return constant(MISSING)
     for deviation in deviations(image):
-        use.note(f"shows image '{image.name}', whose {deviation}")
+        use.note(f"shows {deviation}")
     if node.projection != "FLAT":
         use.note(f"has the projection {node.projection.title()}, which is not supported; the image is mapped by UVs")
     lookup = Lookup(image, node.interpolation, node.extension, _transform(use))

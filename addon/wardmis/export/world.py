@@ -37,10 +37,13 @@ def export_world(world: Any, context: ExportContext) -> WorldData:
 
 def _environment(node: Any, factor: float, world: Any, context: ExportContext) -> WorldData:
     where = f"world '{world.name}': node '{node.name}'"
-    if node.image is None:
-        context.note(f"{where} has no image; magenta is shown instead")
+    reason = "has no image" if node.image is None else missing(node.image)
+    if reason:
+        context.note(f"{where}: {reason}; magenta is shown instead")
         r, g, b = MISSING
         return WorldData((r * factor, g * factor, b * factor))
+    for deviation in deviations(node.image):
+        context.note(f"{where}: {deviation}")
     if node.projection != "EQUIRECTANGULAR":
         context.note(
             f"{where}: the projection {node.projection.title()} is not supported; the image is read as equirectangular"
