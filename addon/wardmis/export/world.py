@@ -10,6 +10,7 @@ import numpy as np
 from .. import compat
 from .context import ExportContext
 from .emission import MISSING, constant_color, note_unsupported, source, strength, surface
+from .image import deviations, missing
 from .model import WorldData
 
 
