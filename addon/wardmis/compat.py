@@ -164,9 +164,12 @@ def add_group_socket(tree: Any, name: str, kind: str, in_out: str) -> Any:
 
 def add_shader_menu() -> Any:
     """The menu Add > Shader of the shader editor."""
-    if VERSION >= (4, 0, 0):
-        return bpy.types.NODE_MT_category_shader_shader
-    return bpy.types.NODE_MT_category_SH_NEW_SHADER
+    return getattr(bpy.types, "NODE_MT_category_shader_shader", None) or bpy.types.NODE_MT_category_SH_NEW_SHADER
+
+
+def add_shader_menu_is_for_blenders_engines() -> bool:
+    """Whether that menu hides Blender's own shaders from engines that it does not know, as it does in 3.4."""
+    return not hasattr(bpy.types, "NODE_MT_category_shader_shader")
 
 
 # The Principled BSDF was renamed and rebuilt in 4.0; the extras are those of its inputs that are left out.

@@ -66,7 +66,8 @@ class WARDMIS_RenderEngine(bpy.types.RenderEngine):
             with tempfile.TemporaryDirectory(prefix="wardmis-", dir=bpy.app.tempdir) as folder:
                 _Render(self, depsgraph, Path(folder)).run()
         except (ExportCancelled, _Stopped):
-            pass
+            if bpy.app.background:  # a script must not take it for a success
+                self.report({"ERROR"}, "WardMIS: stopped before the image was complete")
         except (ExportError, RendererError) as error:
             self.report({"ERROR"}, f"WardMIS: {error}")
         except OSError as error:

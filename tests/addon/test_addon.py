@@ -4,12 +4,14 @@
 from __future__ import annotations
 
 import ast
+import os
 import re
 import unittest
+from unittest import mock
 
 import bpy
 import wardmis
-from support import ADDON
+from support import ADDON, FAKE
 from wardmis import panels, properties
 from wardmis.export import VERSION
 
@@ -84,6 +86,24 @@ class Settings(unittest.TestCase):
             self.assertTrue(prop.description, prop.identifier)
             # what stops a render is shown by the name of the choice
             self.assertIn("stop_by" if prop.identifier in {"samples", "seconds"} else f'"{prop.identifier}"', source)
+
+
+class Preferences(unittest.TestCase):
+    def test_button_tests_the_renderer(self):
+        with mock.patch.dict(os.environ, {"WARDMIS_BINARY": str(FAKE)}):
+            self.assertEqual(bpy.ops.wardmis.test_renderer(), {"FINISHED"})
+        other = mock.patch.dict(os.environ, {"WARDMIS_BINARY": "/bin/true"})
+        with other, self.assertRaisesRegex(RuntimeError, "is not the WardMIS renderer"):
+            bpy.ops.wardmis.test_renderer()
+
+    def test_path_in_the_preferences_goes_first(self):
+        preferences = bpy.context.preferences.addons["wardmis"].preferences
+        preferences.renderer = "/nowhere/wardmis"
+        self.addCleanup(setattr, preferences, "renderer", "")
+        with self.assertRaisesRegex(
+            RuntimeError, "no renderer at /nowhere/wardmis, which the add-on's preferences name"
+        ):
+            bpy.ops.wardmis.test_renderer()
 
 
 class Panels(unittest.TestCase):

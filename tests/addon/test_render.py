@@ -255,7 +255,9 @@ class Stopping(RenderTest):
         process, renderer = self.start("hang")
         process.send_signal(signal.SIGINT)
         self.wait_for_end(renderer, 5)
-        process.communicate(timeout=10)
+        output, _ = process.communicate(timeout=10)
+        self.assertIn("WardMIS: stopped before the image was complete", output)
+        self.assertEqual(process.returncode, 1)
         self.assertEqual(list(self.folder.glob("image*")), [])
         self.assertEqual(list((self.folder / "tmp").rglob("wardmis-*")), [])
 

@@ -84,7 +84,7 @@ class MaterialData:
 class PrimitiveData:
     """The triangles of a mesh that have one material."""
 
-    material: int | None  # index into SceneData.materials
+    material: int  # index into SceneData.materials
     triangles: np.ndarray  # (n, 3) uint32 into the mesh's vertex arrays
 
 
