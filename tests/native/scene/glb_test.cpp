@@ -300,7 +300,7 @@ TEST(Glb, MultipliesTheHierarchy) {
 }
 
 TEST(Glb, MapsCoreMaterials) {
-  const auto material = [](json pbr) { return read(textured({{"pbrMetallicRoughness", pbr}})).materials.at(0); };
+  const auto material = [](const json& pbr) { return read(textured({{"pbrMetallicRoughness", pbr}})).materials.at(0); };
   Material m = material({{"baseColorFactor", {0.5, 0.25, 0, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 0.5}});
   expectNear(m.diffuse.value, {0.5f, 0.25f, 0});
   expectNear(m.specular.value, {0.04f, 0.04f, 0.04f});
@@ -515,20 +515,20 @@ TEST(Glb, RefusesHostileScenes) {
       primitive(b)["attributes"]["POSITION"] = b.accessor<float>({0, 0, 0, 1, 0, 0, 1, bad, 0, 0, 1, 0}, 3);
     };
   };
-  const auto node = [](json value) { return [value](GlbBuilder& b) { b.root["nodes"][0].update(value); }; };
-  const auto material = [](json value) {
+  const auto node = [](const json& value) { return [value](GlbBuilder& b) { b.root["nodes"][0].update(value); }; };
+  const auto material = [](const json& value) {
     return [value](GlbBuilder& b) { primitive(b)["material"] = b.add("materials", value); };
   };
-  const auto extension = [](json value) {
+  const auto extension = [](const json& value) {
     return [value](GlbBuilder& b) { (b.extension() = {{"version", 1}}).update(value); };
   };
-  const auto light = [](json value) {
+  const auto light = [](const json& value) {
     return [value](GlbBuilder& b) {
       b.extension() = {{"version", 1}, {"lights", json::array({value})}};
       b.root["nodes"][0]["extensions"]["WARDMIS_scene"]["light"] = 0;
     };
   };
-  const auto instancing = [](json attributes) {
+  const auto instancing = [](const json& attributes) {
     return [attributes](GlbBuilder& b) {
       b.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = attributes;
     };
@@ -536,13 +536,13 @@ TEST(Glb, RefusesHostileScenes) {
   const auto uri = [](std::string text) {
     return [text](GlbBuilder& b) { b.root["buffers"] = {{{"uri", text}, {"byteLength", 4}}}; };
   };
-  const auto camera = [](json value) {
+  const auto camera = [](const json& value) {
     return [value](GlbBuilder& b) {
       b.root["cameras"] = {{{"extensions", {{"WARDMIS_scene", value}}}}};
       b.root["nodes"][0]["camera"] = 0;
     };
   };
-  const auto image = [](json value) {
+  const auto image = [](const json& value) {
     return [value](GlbBuilder& b) {
       primitive(b)["material"] = b.add("materials", ward({{"diffuse", {{"texture", {{"index", 0}}}}}}));
       b.root["textures"] = {{{"source", 0}}};
