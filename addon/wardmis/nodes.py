@@ -11,6 +11,7 @@ from __future__ import annotations
 import bpy
 
 from . import compat
+from .export.material import SHADERS
 
 # a leading dot keeps the tree out of the menus of node groups
 TREE_NAME = ".Ward BSDF"
@@ -131,9 +132,14 @@ class WardBSDFNode(bpy.types.ShaderNodeCustomGroup):
 
 
 def draw_menu(self, context):
-    if context.space_data.tree_type == "ShaderNodeTree" and context.space_data.shader_type == "OBJECT":
-        add = self.layout.operator("node.add_node", text=WardBSDFNode.bl_label)
-        add.type = WardBSDFNode.bl_idname
+    if context.space_data.tree_type != "ShaderNodeTree" or context.space_data.shader_type != "OBJECT":
+        return
+    kinds = [WardBSDFNode.bl_idname]
+    if context.engine == "WARDMIS" and compat.add_shader_menu_is_for_blenders_engines():
+        kinds = [*SHADERS, "ShaderNodeOutputMaterial"]
+    for kind in kinds:
+        add = self.layout.operator("node.add_node", text=bpy.types.Node.bl_rna_get_subclass(kind).name)
+        add.type = kind
         add.use_transform = True
 
 

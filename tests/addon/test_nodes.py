@@ -4,10 +4,12 @@
 import os
 import tempfile
 import unittest
+from types import SimpleNamespace
 
 import bpy
 import numpy as np
 from wardmis import compat, nodes
+from wardmis.export.material import SHADERS
 
 
 def trees():
@@ -95,6 +97,17 @@ class Node(unittest.TestCase):
     def test_menu_of_the_shader_editor_lists_it_once(self):
         drawn = [f for f in compat.add_shader_menu()._dyn_ui_initialize() if f.__name__ == "draw_menu"]
         self.assertEqual(len(drawn), 1)
+
+    def test_menu_offers_what_can_be_rendered(self):
+        """3.4 hides its own shaders from engines that it does not know."""
+        for engine, expected in (("CYCLES", ["WardBSDFNode"]), ("WARDMIS", [*SHADERS, "ShaderNodeOutputMaterial"])):
+            drawn = []
+            layout = SimpleNamespace(operator=lambda _name, text: drawn.append(SimpleNamespace(text=text)) or drawn[-1])
+            editor = SimpleNamespace(tree_type="ShaderNodeTree", shader_type="OBJECT")
+            nodes.draw_menu(SimpleNamespace(layout=layout), SimpleNamespace(space_data=editor, engine=engine))
+            hidden = compat.add_shader_menu_is_for_blenders_engines()
+            self.assertEqual([item.type for item in drawn], expected if hidden else ["WardBSDFNode"])
+            self.assertEqual(drawn[0].text, "Ward BSDF")
 
     def test_inside_is_diffuse_plus_beckmann_of_the_same_alphas(self):
         """A flat patch under a small sun, seen by Cycles, against f = rho_d/pi + D/(4 c_i c_o) without Fresnel or shadowing.
