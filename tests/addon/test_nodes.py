@@ -43,6 +43,17 @@ def render_with_cycles(samples):
     return pixels.reshape(image.size[1], image.size[0], -1)
 
 
+class Recorder:
+    """A layout that remembers its operators."""
+
+    def __init__(self):
+        self.items = []
+
+    def operator(self, _name, text):
+        self.items.append(SimpleNamespace(text=text))
+        return self.items[-1]
+
+
 class Node(unittest.TestCase):
     def setUp(self):
         bpy.ops.wm.read_factory_settings(use_empty=True)
@@ -101,13 +112,12 @@ class Node(unittest.TestCase):
     def test_menu_offers_what_can_be_rendered(self):
         """3.4 hides its own shaders from engines that it does not know."""
         for engine, expected in (("CYCLES", ["WardBSDFNode"]), ("WARDMIS", [*SHADERS, "ShaderNodeOutputMaterial"])):
-            drawn = []
-            layout = SimpleNamespace(operator=lambda _name, text: drawn.append(SimpleNamespace(text=text)) or drawn[-1])
+            layout = Recorder()
             editor = SimpleNamespace(tree_type="ShaderNodeTree", shader_type="OBJECT")
             nodes.draw_menu(SimpleNamespace(layout=layout), SimpleNamespace(space_data=editor, engine=engine))
             hidden = compat.add_shader_menu_is_for_blenders_engines()
-            self.assertEqual([item.type for item in drawn], expected if hidden else ["WardBSDFNode"])
-            self.assertEqual(drawn[0].text, "Ward BSDF")
+            self.assertEqual([item.type for item in layout.items], expected if hidden else ["WardBSDFNode"])
+            self.assertEqual(layout.items[0].text, "Ward BSDF")
 
     def test_inside_is_diffuse_plus_beckmann_of_the_same_alphas(self):
         """A flat patch under a small sun, seen by Cycles, against f = rho_d/pi + D/(4 c_i c_o) without Fresnel or shadowing.
