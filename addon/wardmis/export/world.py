@@ -38,9 +38,9 @@ def export_world(world: Any, context: ExportContext) -> WorldData:
 
 def _environment(node: Any, factor: float, world: Any, context: ExportContext) -> WorldData:
     where = f"world '{world.name}': node '{node.name}'"
-    reason = "has no image" if node.image is None else missing(node.image)
-    if reason:
-        context.note(f"{where}: {reason}; magenta is shown instead")
+    if node.image is None or missing(node.image):
+        reason = "" if node.image is None else f": {missing(node.image)}"
+        context.note(f"{where} has no image{reason}; magenta is shown instead")
         r, g, b = MISSING
         return WorldData((r * factor, g * factor, b * factor))
     for deviation in deviations(node.image):
