@@ -7,6 +7,7 @@ import hashlib
 import os
 import sys
 import time
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -18,9 +19,6 @@ from sheet import Column, contact_sheet
 
 SCENES = ("teapot", "veach")
 ALLOCATIONS = ("equal", "variance", "second-moment")
-PERCENTAGE = 50  # of the scene's resolution
-SAMPLES = 64  # camera samples per pixel, pilot included
-REFERENCE_SAMPLES = 2048
 REFERENCE_SEED = 1_000_003  # a stream of its own: nothing is compared with its own samples
 
 CYCLES_NOTE = (
@@ -29,10 +27,17 @@ CYCLES_NOTE = (
 )
 
 
-def wardmis(allocation: str, samples: int, seed: int) -> dict[str, Any]:
+@dataclass
+class Effort:
+    percentage: int  # of the scene's resolution
+    samples: int  # camera samples per pixel, pilot included
+    reference_samples: int
+
+
+def wardmis(effort: Effort, allocation: str, samples: int, seed: int) -> dict[str, Any]:
     return {
         "render.engine": "WARDMIS",
-        "render.resolution_percentage": PERCENTAGE,
+        "render.resolution_percentage": effort.percentage,
         "wardmis.allocation": allocation,
         "wardmis.stop_by": "samples",
         "wardmis.samples": samples,
@@ -40,12 +45,12 @@ def wardmis(allocation: str, samples: int, seed: int) -> dict[str, Any]:
     }
 
 
-def cycles() -> dict[str, Any]:
+def cycles(effort: Effort) -> dict[str, Any]:
     """The same number of camera samples, without what would change the image: clamping, blurring, guessing, denoising."""
     return {
         "render.engine": "CYCLES",
-        "render.resolution_percentage": PERCENTAGE,
-        "cycles.samples": SAMPLES,
+        "render.resolution_percentage": effort.percentage,
+        "cycles.samples": effort.samples,
         "cycles.use_adaptive_sampling": False,
         "cycles.use_denoising": False,
         "cycles.sample_clamp_indirect": 0,
@@ -57,13 +62,17 @@ def cycles() -> dict[str, Any]:
     }
 
 
+def cycles_samples(image: Rendered) -> int:
+    return next(int(str(v)) for name, v in image.exr.attributes.items() if name.endswith(".samples"))
+
+
 def say(text: str) -> None:
     print(text, file=sys.stderr, flush=True)
 
 
-def reference(blend: Path) -> tuple[Rendered, bool]:
+def reference(blend: Path, effort: Effort) -> tuple[Rendered, bool]:
     """Made once for a scene, a renderer and an add-on, and kept in build/demo: (image, made in this run)."""
-    settings = wardmis("equal", REFERENCE_SAMPLES, REFERENCE_SEED)
+    settings = wardmis(effort, "equal", effort.reference_samples, REFERENCE_SEED)
     digest = hashlib.sha256(repr(settings).encode())
     exporter = sorted((ROOT / "addon" / "wardmis").rglob("*.py"))
     for path in [blend, Path(os.environ["WARDMIS_BINARY"]), *exporter]:
@@ -88,7 +97,7 @@ def figures(scene: str, label: str, image: Rendered, truth: Rendered | None) -> 
         allocation=label,
         seconds=image.seconds,
         pilot_seconds=statistics["seconds"]["pilot"] if statistics else None,
-        samples_per_pixel=statistics["samples_per_pixel"] if statistics else SAMPLES,
+        samples_per_pixel=statistics["samples_per_pixel"] if statistics else cycles_samples(image),
         samples=statistics["samples"]["total"] if statistics else None,
         rays=statistics["rays"]["total"] if statistics else None,
         rel_mse=None if against is None else metrics.rel_mse(pixels, against),
@@ -96,11 +105,11 @@ def figures(scene: str, label: str, image: Rendered, truth: Rendered | None) -> 
     )
 
 
-def demonstrate(scene: str, out: Path) -> tuple[list[table.Row], str]:
+def demonstrate(scene: str, out: Path, effort: Effort) -> tuple[list[table.Row], str]:
     """The scene's rows, and a note on its reference. Writes the images and the sheet."""
     blend = ROOT / "blend" / f"{scene}.blend"
-    say(f"{blend.name}: reference, {REFERENCE_SAMPLES} samples per pixel")
-    truth, made = reference(blend)
+    say(f"{blend.name}: reference, {effort.reference_samples} samples per pixel")
+    truth, made = reference(blend, effort)
     truth_pixels = truth.exr.passes["Combined"]
     noise = metrics.reference_noise(truth_pixels, truth.exr.passes["Variance"])
     truth_note = (
@@ -110,7 +119,9 @@ def demonstrate(scene: str, out: Path) -> tuple[list[table.Row], str]:
     rows, columns = [], []
     for allocation in ALLOCATIONS:
         say(f"{blend.name}: {allocation}")
-        image = blender.render(blend, out / f"{scene}-{allocation}.exr", wardmis(allocation, SAMPLES, seed=1))
+        image = blender.render(
+            blend, out / f"{scene}-{allocation}.exr", wardmis(effort, allocation, effort.samples, seed=1)
+        )
         row = figures(scene, allocation, image, truth)
         rows.append(row)
         lines = [
@@ -119,7 +130,7 @@ def demonstrate(scene: str, out: Path) -> tuple[list[table.Row], str]:
         ]
         columns.append(Column(allocation, image.exr.passes["Combined"], lines))
     say(f"{blend.name}: Cycles")
-    image = blender.render(blend, out / f"{scene}-cycles.exr", cycles())
+    image = blender.render(blend, out / f"{scene}-cycles.exr", cycles(effort))
     row = figures(scene, "Cycles", image, None)
     rows.append(row)
     lines = [f"{row.samples_per_pixel} spp, {row.seconds:.1f} s", "Beckmann, not Ward"]
@@ -140,7 +151,11 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="./dev demo", description=__doc__)
     parser.add_argument("scenes", nargs="*", default=SCENES, help="names of files in blend/ (default: %(default)s)")
     parser.add_argument("--out", type=Path, default=ROOT / "out" / "demo")
+    parser.add_argument("--samples", type=int, default=32, help="camera samples per pixel (%(default)s)")
+    parser.add_argument("--reference-samples", type=int, default=1024, help="of the reference (%(default)s)")
+    parser.add_argument("--percentage", type=int, default=50, help="of the scenes' resolution (%(default)s)")
     arguments = parser.parse_args()
+    effort = Effort(arguments.percentage, arguments.samples, arguments.reference_samples)
     arguments.out.mkdir(parents=True, exist_ok=True)
     began = time.monotonic()
     rows: list[table.Row] = []
@@ -150,7 +165,7 @@ def main() -> int:
     ]
     try:
         for scene in arguments.scenes:
-            scene_rows, note = demonstrate(scene, arguments.out)
+            scene_rows, note = demonstrate(scene, arguments.out, effort)
             rows += scene_rows
             notes.append(note)
     except blender.RenderFailed as error:

@@ -29,7 +29,7 @@ class Column:
 
 def exposure(reference: Pixels) -> float:
     """1, or for a bright scene the power of two that brings its brighter parts below white."""
-    bright = float(np.percentile(reference[..., :3].mean(axis=-1), 98))
+    bright = float(np.percentile(reference[..., :3].mean(axis=-1), 90))
     return 2.0 ** float(np.floor(-np.log2(max(bright, 1.0))))
 
 
