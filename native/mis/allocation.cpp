@@ -21,14 +21,13 @@ Fractions allocate(AllocationRule rule, const Moments& m, TechniqueMask used, fl
   bool usable = true;
   each([&](int i) {
     if (rule == AllocationRule::kVariance) {
-      const float mean = m.mean[i] / m.hits;
-      a[i] = std::max(0.0f, m.square[i] / m.hits - mean * mean);  // sigma^2_i,eq
-      usable &= m.square[i] > 0;
+      const float mean = m.mean[i] / m.hits, sigma2 = m.square[i] / m.hits - mean * mean;
+      usable &= m.square[i] > 0 && std::isfinite(sigma2);
+      a[i] = std::max(0.0f, sigma2);
     } else {
-      a[i] = m.hits / m.second[i];  // 1/m^2_i
-      usable &= m.second[i] > 0;
+      usable &= m.second[i] > 0 && std::isfinite(m.second[i]);
+      a[i] = m.hits / m.second[i];
     }
-    usable &= std::isfinite(a[i]);
     sum += a[i];
   });
   if (!usable || !(sum > 0) || !std::isfinite(sum)) return equal(), a;
@@ -50,16 +49,12 @@ Fractions allocate(AllocationRule rule, const Moments& m, TechniqueMask used, fl
 }
 
 Fractions combineSplit(const Fractions& specular, const Fractions& diffuse) {
-  // Without light samples there is nothing shared: half for each integrand that exists.
-  if (!(specular[kLight] > 0) || !(diffuse[kLight] > 0)) {
-    Fractions a{specular[kLobe], diffuse[kCosine], specular[kLight] + diffuse[kLight]};
-    const float sum = a[0] + a[1] + a[2];
-    for (float& x : a) x = sum > 0 ? x / sum : 0;
-    return a;
-  }
-  const float lobe = specular[kLobe] / specular[kLight], cosine = diffuse[kCosine] / diffuse[kLight];
-  const float inv = 1 / (1 + lobe + cosine);
-  return {lobe * inv, cosine * inv, inv};
+  const double s = specular[kLight], d = diffuse[kLight];
+  // lobe/light and cosine/light over a common denominator; without light samples half for each integrand that exists
+  const bool shared = s > 0 && d > 0;
+  const double lobe = specular[kLobe] * (shared ? d : 1), cosine = diffuse[kCosine] * (shared ? s : 1), light = shared ? s * d : s + d;
+  const double sum = lobe + cosine + light, inv = sum > 0 ? 1 / sum : 0;
+  return {static_cast<float>(lobe * inv), static_cast<float>(cosine * inv), static_cast<float>(light * inv)};
 }
 
 Fractions restrict(const Fractions& a, TechniqueMask available) {

@@ -54,8 +54,8 @@ inline std::array<int, kTechniques> systematicCounts(const Fractions& a, int n, 
   int before = 0;
   for (int i = 0; i < last; ++i) {
     cumulated += a[i];
-    // points below the cumulated fraction: the number of j with (j + u)/n < cumulated
-    const int below = std::min(n, std::max(before, static_cast<int>(std::ceil(cumulated * static_cast<float>(n) - u))));
+    // points below the cumulated fraction: the number of j with (j + u)/n < cumulated, exact in double
+    const int below = std::min(n, std::max(before, static_cast<int>(std::ceil(double(cumulated) * n - double(u)))));
     counts[i] = below - before;
     before = below;
   }

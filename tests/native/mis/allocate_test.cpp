@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Fractions from moments: the golden file's exact ones, clamps, and moments that say nothing.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <limits>
+
+#include "ward_case.h"
+
+namespace wardmis {
+namespace {
+
+using namespace test;
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
+
+double sum(const Fractions& a) { return double(a[0]) + double(a[1]) + double(a[2]); }
+
+void expectFractions(const WardCase& c, AllocationRule rule, const char* key, const std::array<double, 3>& tolerance) {
+  const Fractions a = allocate(rule, exactMoments(c), c.used, 0);
+  for (size_t i = 0; i < static_cast<size_t>(c.techniques); ++i)
+    EXPECT_NEAR(double(a[i]), c.expect["fractions"][key][i].get<double>(), tolerance[i]) << key << " technique " << i;
+  EXPECT_NEAR(sum(a), 1, 1e-6);
+}
+
+void checkGolden(const WardCase& c) {
+  SCOPED_TRACE(c.input.dump());
+  std::array<double, 3> equal{}, second{}, variance{};
+  double cancellation = 0;
+  const Moments m = exactMoments(c);
+  for (size_t i = 0; i < static_cast<size_t>(c.techniques); ++i) {
+    const double a = c.expect["fractions"]["inv_m2"][i].get<double>();
+    equal[i] = 1e-7;
+    second[i] = 1e-6 * a + 1e-30;
+    // sigma^2 = square - mean^2 in float
+    const double sigma2 = c.techniques == 3 ? c.expect["sigma2_eq"][i].get<double>()
+                                            : c.expect["sigma2_" + std::to_string(i + 1) + "_eq"].get<double>();
+    cancellation = std::max(cancellation, 3e-7 * double(m.square[i]) / sigma2);
+  }
+  expectFractions(c, AllocationRule::kEqual, "equal", equal);
+  expectFractions(c, AllocationRule::kSecondMoment, "inv_m2", second);
+  variance.fill(cancellation + 1e-6);
+  if (cancellation < 0.1) expectFractions(c, AllocationRule::kVariance, "sigma2", variance);
+}
+
+// Full, planar, split, joint, Phong: fractions are fractions, whatever the integrand.
+TEST(Allocate, GoldenFractions) {
+  int checked = 0;
+  for (const auto& c : golden()["estimator_cases"]) {
+    const auto& first = c["expect"]["m2_1"];  // in joint mode beyond any float: nothing to allocate by
+    if (!first.is_number() || first.get<double>() > 1e37 || !c["input"].contains("theta_o_deg")) continue;
+    checkGolden(WardCase(c));
+    ++checked;
+  }
+  EXPECT_GE(checked, 50);
+}
+TEST(Allocate, GoldenFractionsOfThreeTechniques) {
+  for (const auto& c : golden()["three_technique_cases"]) checkGolden(WardCase(c));
+}
+
+// Def. 8's non-balance estimator has Def. 7's variance, in the exact values and with the fractions computed here:
+// sum sigma_i^2/a_i with a_i proportional to sigma_i^2 is n sum sigma_i^2.
+TEST(Allocate, VarianceRuleTiesWithEqual) {
+  const char *def7 = "F_eq (Def 7)", *def8 = "nonbalance sigma2 (Def 8, Eq 14 weights)";
+  for (const char* list : {"estimator_cases", "three_technique_cases"})
+    for (const auto& json : golden()[list]) {
+      if (json["input"]["model"] == "lafortune-phong" || !json["expect"]["NVar"][def8].is_number()) continue;
+      const WardCase c(json);
+      const double nVar = c.expect["NVar"][def7].get<double>();
+      EXPECT_NEAR(c.expect["NVar"][def8].get<double>(), nVar, 1e-9 * nVar);
+      if (c.techniques != 3) continue;
+      const Fractions a = allocate(AllocationRule::kVariance, exactMoments(c), c.used, 0);
+      double variance = 0;
+      for (size_t i = 0; i < 3; ++i) variance += c.expect["sigma2_eq"][i].get<double>() / double(a[i]);
+      EXPECT_NEAR(variance, nVar, 1e-4 * nVar);
+    }
+}
+
+Moments randomMoments(Random& random) {
+  Moments m;
+  m.hits = static_cast<float>(random.integer(1, 1000));
+  for (size_t i = 0; i < 3; ++i) {
+    m.second[i] = m.hits * static_cast<float>(random.logUniform(1e-8, 1e8));
+    const double mean = random.logUniform(1e-3, 1), sigma2 = mean * mean * random.logUniform(1e-3, 1e3);
+    m.mean[i] = m.hits * static_cast<float>(mean);
+    m.square[i] = m.hits * static_cast<float>(mean * mean + sigma2);
+  }
+  return m;
+}
+
+constexpr AllocationRule kMomentRules[] = {AllocationRule::kVariance, AllocationRule::kSecondMoment};
+
+TEST(Allocate, ClampsAndSumsToOne) {
+  Random random(1);
+  for (int k = 0; k < 20000; ++k) {
+    const Moments m = randomMoments(random);
+    const auto used = static_cast<TechniqueMask>(random.integer(1, 7));
+    const int n = std::popcount(used);
+    const float minimum = k % 4 == 0 ? 0 : static_cast<float>(random.uniform(0, 0.6));  // also more than 1/n
+    const double floor = std::min(double(minimum), 1.0 / n);
+    for (AllocationRule rule : kMomentRules) {
+      const Fractions a = allocate(rule, m, used, minimum), wanted = allocate(rule, m, used, 0);
+      EXPECT_NEAR(sum(a), 1, 1e-6);
+      double ratio = 0;
+      for (size_t i = 0; i < 3; ++i) {
+        if ((used >> i & 1) == 0) {
+          EXPECT_EQ(a[i], 0);
+          continue;
+        }
+        EXPECT_GE(double(a[i]), floor * (1 - 2e-6));
+        EXPECT_LE(double(a[i]), 1 - (n - 1) * floor + 1e-6);
+        // what is above the minimum keeps its proportions
+        if (double(a[i]) > floor * (1 + 1e-5)) {
+          const double r = double(a[i]) / double(wanted[i]);
+          if (ratio > 0) {
+            EXPECT_NEAR(r, ratio, 1e-5 * ratio);
+          }
+          ratio = r;
+        }
+      }
+    }
+  }
+}
+
+TEST(Allocate, DoesNotDependOnTheScaleOfTheIntegrand) {
+  Random random(2);
+  for (int k = 0; k < 1000; ++k) {
+    Moments m = randomMoments(random);
+    for (AllocationRule rule : kMomentRules) {
+      const Fractions a = allocate(rule, m, kAllTechniques, 0.1f);
+      Moments bright = m;
+      for (size_t i = 0; i < 3; ++i)
+        bright.second[i] *= 0x1p20f, bright.square[i] *= 0x1p20f, bright.mean[i] *= 0x1p10f;
+      EXPECT_EQ(a, allocate(rule, bright, kAllTechniques, 0.1f));
+    }
+  }
+}
+
+// A zero, a NaN or an infinity in what a rule reads of any technique: equal fractions.
+TEST(Allocate, EqualWhereTheMomentsSayNothing) {
+  Random random(3);
+  const auto isEqual = [](const Fractions& a) { return a == Fractions{1.0f / 3, 1.0f / 3, 1.0f / 3}; };
+  for (size_t i = 0; i < 3; ++i) {
+    for (float bad : {0.0f, kNan, kInf, -kInf, -1.0f}) {
+      Moments m = randomMoments(random);
+      m.second[i] = bad;
+      EXPECT_TRUE(isEqual(allocate(AllocationRule::kSecondMoment, m, kAllTechniques, 0))) << "second " << bad;
+      EXPECT_FALSE(isEqual(allocate(AllocationRule::kVariance, m, kAllTechniques, 0)));  // does not read it
+      m = randomMoments(random);
+      m.square[i] = bad;
+      EXPECT_TRUE(isEqual(allocate(AllocationRule::kVariance, m, kAllTechniques, 0))) << "square " << bad;
+      EXPECT_FALSE(isEqual(allocate(AllocationRule::kSecondMoment, m, kAllTechniques, 0)));
+    }
+    for (float bad : {kNan, kInf, -kInf}) {
+      Moments m = randomMoments(random);
+      m.mean[i] = bad;
+      EXPECT_TRUE(isEqual(allocate(AllocationRule::kVariance, m, kAllTechniques, 0))) << "mean " << bad;
+    }
+  }
+  for (AllocationRule rule : kMomentRules) {
+    for (float hits : {0.0f, -1.0f, kNan}) {
+      Moments m = randomMoments(random);
+      m.hits = hits;
+      EXPECT_TRUE(isEqual(allocate(rule, m, kAllTechniques, 0.1f))) << hits;
+    }
+    EXPECT_TRUE(isEqual(allocate(rule, {}, kAllTechniques, 0.1f)));
+    // no variance at all: every technique is exact, none is better
+    Moments m;
+    m.hits = 1, m.square = m.mean = {1, 1, 1};
+    EXPECT_TRUE(isEqual(allocate(AllocationRule::kVariance, m, kAllTechniques, 0)));
+    // a technique out of use may hold anything
+    m = randomMoments(random);
+    m.second[1] = m.square[1] = m.mean[1] = kNan;
+    const Fractions a = allocate(rule, m, kSpecularTechniques, 0);
+    EXPECT_EQ(a[1], 0);
+    EXPECT_NEAR(sum(a), 1, 1e-6);
+    EXPECT_NE(a[0], 0.5f);
+    EXPECT_EQ(allocate(rule, m, 0, 0.1f), (Fractions{}));
+  }
+}
+
+TEST(Allocate, ExtremeMoments) {
+  for (AllocationRule rule : kMomentRules) {
+    for (float big : {1e30f, 3e38f}) {
+      for (float small : {1e-45f, 1e-38f, 1e-30f}) {
+        Moments m;
+        m.hits = 1, m.second = m.square = {small, big, big};
+        const Fractions a = allocate(rule, m, kAllTechniques, 0.1f);
+        EXPECT_NEAR(sum(a), 1, 1e-5);
+        for (float x : a) EXPECT_GE(x, 0.0999f);
+      }
+    }
+  }
+}
+
+// lobe : light as the specular integrand wants, cosine : light as the diffuse one.
+TEST(CombineSplit, KeepsBothRatios) {
+  Random random(4);
+  for (int k = 0; k < 1000; ++k) {
+    const auto x = static_cast<float>(random.logUniform(1e-30, 0.999)),
+               y = static_cast<float>(random.logUniform(1e-30, 0.999));
+    const bool flip = k % 2 == 0;
+    const Fractions specular{flip ? 1 - x : x, 0, flip ? x : 1 - x}, diffuse{0, 1 - y, y};
+    const Fractions a = combineSplit(specular, diffuse);
+    EXPECT_NEAR(sum(a), 1, 1e-6);
+    EXPECT_NEAR(double(a[0]) * double(specular[2]), double(a[2]) * double(specular[0]),
+                1e-6 * double(a[0]) * double(specular[2]) + 1e-44);
+    EXPECT_NEAR(double(a[1]) * double(diffuse[2]), double(a[2]) * double(diffuse[1]),
+                1e-6 * double(a[1]) * double(diffuse[2]) + 1e-44);
+  }
+}
+TEST(CombineSplit, WithoutLightHalfForEach) {
+  EXPECT_EQ(combineSplit({1, 0, 0}, {0, 1, 0}), (Fractions{0.5f, 0.5f, 0}));
+  EXPECT_EQ(combineSplit({1, 0, 0}, {0, 0, 0}), (Fractions{1, 0, 0}));
+  EXPECT_EQ(combineSplit({0, 0, 0}, {0, 1, 0}), (Fractions{0, 1, 0}));
+  EXPECT_EQ(combineSplit({0, 0, 0}, {0, 0, 0}), (Fractions{}));
+  EXPECT_EQ(combineSplit({0.5f, 0, 0.5f}, {0, 0, 0}), (Fractions{0.5f, 0, 0.5f}));
+}
+// With no minimum a light's share may be next to nothing.
+TEST(CombineSplit, TinyShares) {
+  for (float x : {1e-45f, 1e-40f, 1e-38f, 1e-20f})
+    for (float y : {1e-45f, 1e-40f, 1e-38f, 1e-20f, 0.5f}) {
+      const Fractions a = combineSplit({1 - x, 0, x}, {0, 1 - y, y});
+      EXPECT_NEAR(sum(a), 1, 1e-6) << x << " " << y;
+    }
+}
+
+TEST(Restrict, KeepsProportions) {
+  const Fractions a{0.2f, 0.3f, 0.5f};
+  const Fractions r = restrict(a, kSpecularTechniques);
+  EXPECT_FLOAT_EQ(r[0], 0.2f / 0.7f);
+  EXPECT_EQ(r[1], 0);
+  EXPECT_FLOAT_EQ(r[2], 0.5f / 0.7f);
+  EXPECT_EQ(restrict({1, 0, 0}, kDiffuseTechniques), (Fractions{0, 0.5f, 0.5f}));  // nothing known of these
+  EXPECT_EQ(restrict({1, 0, 0}, maskOf(kLight)), (Fractions{0, 0, 1}));
+  EXPECT_EQ(restrict(a, 0), (Fractions{}));
+}
+
+TEST(Names, AreTheCommandLinesOwn) {
+  EXPECT_EQ(name(AllocationRule::kSecondMoment), "second-moment");
+  EXPECT_EQ(name(AllocationRule::kAlbedo), "albedo");
+  EXPECT_EQ(name(WeightRule::kNonbalance), "nonbalance");
+  EXPECT_EQ(name(Integrand::kJoint), "joint");
+}
+
+}  // namespace
+}  // namespace wardmis
