@@ -23,7 +23,6 @@ EXCLUDED = {
     "DATA_PT_spot",
     "NODE_DATA_PT_light",
     "NODE_DATA_PT_spot",
-    "RENDER_PT_gpencil",
     "RENDER_PT_stereoscopy",
 }
 EXCLUDED_PREFIXES = ("RENDER_PT_freestyle", "VIEWLAYER_PT_freestyle", "MATERIAL_PT_freestyle")

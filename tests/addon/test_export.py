@@ -339,6 +339,13 @@ class Visibility(SceneTest):
             scene.notes, ["object 'Holdout': holdouts are not supported; it is rendered as any other object"]
         )
 
+    def test_light_linking_is_noted(self):
+        quad = self.add_quad()
+        if not hasattr(quad, "light_linking"):
+            self.skipTest("this Blender has no light linking")
+        quad.light_linking.receiver_collection = bpy.data.collections.new("Receivers")
+        self.assertIn("object 'Quad': light linking is not supported", self.gather().notes[0])
+
     def test_motion_blur_is_noted(self):
         self.scene.render.use_motion_blur = True
         self.assertIn("motion blur is not supported", self.gather().notes[0])

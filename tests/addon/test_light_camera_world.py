@@ -282,6 +282,14 @@ class World(SceneTest):
         self.assertIn("the projection Mirror_Ball is not supported", notes)
         self.assertIn("only the rotation of node 'Mapping' is used", notes)
 
+    def test_volume_and_ray_visibility_are_noted(self):
+        volume = self.tree.nodes.new("ShaderNodeVolumeScatter")
+        self.tree.links.new(volume.outputs[0], self.tree.get_output_node("ALL").inputs["Volume"])
+        self.world.cycles_visibility.camera = False
+        notes = "\n".join(self.gather().notes)
+        self.assertIn("world 'World': volumes are not supported", notes)
+        self.assertIn("world 'World': its ray visibility is not supported", notes)
+
     def test_missing_image_and_unknown_color_are_magenta(self):
         self.environment(None).image = None
         scene = self.gather()

@@ -3,12 +3,10 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
 import math
 import os
 import struct
-import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -62,9 +60,9 @@ def write_glb(
             f"the scene needs {size / 2**30:.1f} GiB, and a GLB file holds 4 GiB; use instances, or fewer or smaller meshes and images"
         )
     path = Path(path)
-    handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".tmp", dir=path.parent)
+    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
     try:
-        with os.fdopen(handle, "wb", buffering=0) as file:
+        with open(temporary, "wb", buffering=0) as file:
             file.write(struct.pack("<4sII", b"glTF", 2, size))
             file.write(struct.pack("<I4s", len(text), b"JSON") + text)
             file.write(struct.pack("<I4s", encoder.length, b"BIN\0"))
@@ -73,23 +71,15 @@ def write_glb(
                 for start in range(0, len(view), WRITE_STEP):
                     _write_all(file, view[start : start + WRITE_STEP])
                     check_cancelled()
-        os.chmod(temporary, 0o666 & ~_umask())
         os.replace(temporary, path)
     except BaseException:
-        with contextlib.suppress(OSError):
-            os.unlink(temporary)
+        temporary.unlink(missing_ok=True)
         raise
 
 
 def _write_all(file: Any, view: memoryview) -> None:
     while len(view):
         view = view[file.write(view) :]
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
 
 
 class _Encoder:

@@ -22,6 +22,8 @@ NO_MATERIAL = MaterialData("(no material)", diffuse=ColorInput((0.8, 0.8, 0.8)))
 
 # their surfaces arrive as meshes of their own in the depsgraph
 SEEN_AS_MESHES = {"CURVE", "SURFACE", "META", "FONT"}
+# Blender draws them over the image of any engine
+DRAWN_BY_BLENDER = {"GPENCIL", "GREASEPENCIL"}
 INVISIBLE = {"EMPTY", "CAMERA", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE"}
 
 
@@ -90,6 +92,7 @@ class _Gatherer:
                 self._note_hair(obj)
             if not instance.show_self:
                 continue
+            self._note_light_linking(obj.original)
             if kind == "MESH":
                 self._mesh(obj, instance)
             elif kind == "LIGHT":
@@ -97,7 +100,7 @@ class _Gatherer:
                 light = export_light(obj.data, obj.name, matrix, self._hidden_from(obj, instance), self.context)
                 if light is not None:
                     self.lights.append(light)
-            elif kind not in SEEN_AS_MESHES:
+            elif kind not in SEEN_AS_MESHES | DRAWN_BY_BLENDER:
                 self.context.note(f"object '{obj.name}': {kind.lower()} objects are not supported; it is left out")
 
     def _matrix(self, instance: Any) -> np.ndarray:
@@ -173,6 +176,13 @@ class _Gatherer:
                 self.context.note(
                     f"object '{original.name}': {what} are not supported; it is rendered as any other object"
                 )
+
+    def _note_light_linking(self, original: Any) -> None:
+        linking = getattr(original, "light_linking", None)
+        if linking is not None and (linking.receiver_collection or linking.blocker_collection):
+            self.context.note(
+                f"object '{original.name}': light linking is not supported; its light reaches all objects"
+            )
 
     def _note_hair(self, obj: Any) -> None:
         for system in obj.particle_systems:

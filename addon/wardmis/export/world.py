@@ -19,6 +19,7 @@ def export_world(world: Any, context: ExportContext) -> WorldData:
         return WorldData()
     if not compat.uses_nodes(world):
         return WorldData(tuple(world.color))
+    _note_settings(world, context)
     shader = surface(world, "world", context)
     if shader is None:
         return WorldData()
@@ -34,6 +35,15 @@ def export_world(world: Any, context: ExportContext) -> WorldData:
         r, g, b = constant_color(node, world, "world", context)
         return WorldData((r * factor, g * factor, b * factor))
     return _environment(origin.node, factor, world, context)
+
+
+def _note_settings(world: Any, context: ExportContext) -> None:
+    output = world.node_tree.get_output_node("CYCLES")
+    if output is not None and source(output.inputs["Volume"]) is not None:
+        context.note(f"world '{world.name}': volumes are not supported; the air is clear")
+    visibility = getattr(world, "cycles_visibility", None)
+    if visibility is not None and not (visibility.camera and visibility.diffuse and visibility.glossy):
+        context.note(f"world '{world.name}': its ray visibility is not supported; all rays see it")
 
 
 def _environment(node: Any, factor: float, world: Any, context: ExportContext) -> WorldData:
