@@ -131,20 +131,20 @@ class _Render:
 
     def _arguments(self) -> list[str]:
         settings, render = self.scene.wardmis, self.scene.render
-        arguments = [self.scene_path, "-o", self.image_path, "--layer", self.layer.name]
+        arguments = [self.scene_path, "-o", self.image_path, f"--layer={self.layer.name}"]
         arguments += ["--progress", "json", "--watch-stdin"]
         if not bpy.app.background:  # nobody watches
             arguments += ["--preview", self.preview_path]
         arguments += ["--allocation", settings.allocation, "--weights", settings.weights]
         arguments += ["--integrand", settings.integrand, "--integrator", settings.integrator]
         arguments += ["--sampler", settings.sampler, "--seed", settings.seed, "--max-depth", settings.max_depth]
-        arguments += ["--samples-per-hit", settings.samples_per_hit, "--min-fraction", f"{settings.min_fraction:.6g}"]
+        arguments += ["--samples-per-hit", settings.samples_per_hit]
         if settings.stop_by == "samples":
             arguments += ["--spp", settings.samples]
         else:
             arguments += ["--time", f"{settings.seconds:.6g}"]
         if settings.allocation in ALLOCATIONS_WITH_PILOT:
-            arguments += ["--pilot-spp", settings.pilot_samples]
+            arguments += ["--pilot-spp", settings.pilot_samples, "--min-fraction", f"{settings.min_fraction:.6g}"]
         threads = settings.threads or (render.threads if render.threads_mode == "FIXED" else 0)
         if threads:
             arguments += ["--threads", threads]

@@ -87,7 +87,7 @@ class WARDMIS_RENDER_PT_allocation(_RenderPanel, bpy.types.Panel):
         column.separator()
         pilot = settings.allocation in ALLOCATIONS_WITH_PILOT
         _row(column, pilot).prop(settings, "pilot_samples")
-        _row(column, settings.allocation != "equal").prop(settings, "min_fraction")
+        _row(column, pilot).prop(settings, "min_fraction")
 
 
 class WARDMIS_RENDER_PT_light_paths(_RenderPanel, bpy.types.Panel):

@@ -62,13 +62,16 @@ class WARDMIS_PG_scene(bpy.types.PropertyGroup):
         name="Integrator", description="Which light is rendered", items=INTEGRATORS, default="path"
     )
     stop_by: EnumProperty(name="Stop by", description="What ends the render", items=STOPS, default="samples")
-    samples: IntProperty(name="Samples", description="Camera samples per pixel", default=64, min=1, soft_max=4096)
+    samples: IntProperty(
+        name="Samples", description="Camera samples per pixel", default=64, min=1, soft_max=4096, max=1 << 24
+    )
     seconds: FloatProperty(
         name="Seconds",
         description="Time for the render of one view layer and frame, pilot included",
         default=60.0,
         min=0.1,
         soft_max=3600.0,
+        max=1e7,
         precision=1,
     )
     samples_per_hit: IntProperty(
@@ -84,13 +87,14 @@ class WARDMIS_PG_scene(bpy.types.PropertyGroup):
         default=4,
         min=1,
         soft_max=64,
+        max=1 << 20,
     )
     min_fraction: FloatProperty(
         name="Least Share",
         description="No technique gets less than this share of the samples",
         default=0.1,
-        min=0.0,
-        max=1.0 / 3.0,
+        min=0.001,
+        max=0.5,
         precision=3,
         subtype="FACTOR",
     )

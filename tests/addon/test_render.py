@@ -86,7 +86,8 @@ class Passes(RenderTest):
         )
         self.assertEqual(run.code, 0, run.output)
         self.assertEqual(
-            [call["arguments"][call["arguments"].index("--layer") + 1] for call in run.calls], ["ViewLayer", "Second"]
+            [word for call in run.calls for word in call["arguments"] if word.startswith("--layer")],
+            ["--layer=ViewLayer", "--layer=Second"],
         )
         image = read_exr(run.images[0])
         for layer in ("ViewLayer", "Second"):
