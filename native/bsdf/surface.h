@@ -24,13 +24,24 @@ template <class T, int Capacity>
 struct Batch {
   T x[Capacity], y[Capacity], z[Capacity];  // wi
   T specular[Capacity];                     // f_s cos for rho_s = 1
-  T diffuse[Capacity];                      // cos/pi: f_d cos for rho_d = 1, and the cosine technique's pdf
   T lobe[Capacity];                         // the lobe technique's pdf
 
   Vec3<T> wi(int j) const { return {x[j], y[j], z[j]}; }
   void set(int j, Vec3<T> wi) { x[j] = wi.x, y[j] = wi.y, z[j] = wi.z; }
 };
 
+// f_s cos (rho_s = 1) and the lobe's pdf at one direction.
+template <class T>
+inline WardValue<T> evaluateWard(const Surface& s, Vec3<T> wi, Vec3<T> wo) {
+  const T invAx = T(1) / T(s.ax), invAy = T(1) / T(s.ay);
+  switch (s.variant) {
+    case WardVariant::kWard: return wardEvaluate<WardVariant::kWard>(wi, wo, invAx, invAy);
+    case WardVariant::kWardDur: return wardEvaluate<WardVariant::kWardDur>(wi, wo, invAx, invAy);
+    default: return wardEvaluate<WardVariant::kWardGmd>(wi, wo, invAx, invAy);
+  }
+}
+
+// The same for the first n directions of a batch, in one vectorised loop.
 template <WardVariant V, class T, int Capacity>
 inline void evaluateWard(Batch<T, Capacity>& b, int n, Vec3<T> wo, T invAx, T invAy) {
   for (int j = 0; j < n; ++j) {
@@ -40,17 +51,17 @@ inline void evaluateWard(Batch<T, Capacity>& b, int n, Vec3<T> wo, T invAx, T in
   }
 }
 
-// Fills specular, diffuse and lobe of the first n directions.
-template <bool HasSpecular, class T, int Capacity>
+// Below this many directions, one at a time is faster.
+inline constexpr int kVectorised = 8;
+
+// Fills specular and lobe of the first n directions, however few.
+template <class T, int Capacity>
 inline void evaluate(const Surface& s, Vec3<T> wo, Batch<T, Capacity>& b, int n) {
-  for (int j = 0; j < n; ++j) b.diffuse[j] = (b.z[j] > T(0) ? b.z[j] : T(0)) * (T(1) / kPi<T>);
-  if constexpr (HasSpecular) {
-    const T invAx = T(1) / T(s.ax), invAy = T(1) / T(s.ay);
-    switch (s.variant) {
-      case WardVariant::kWard: return evaluateWard<WardVariant::kWard>(b, n, wo, invAx, invAy);
-      case WardVariant::kWardDur: return evaluateWard<WardVariant::kWardDur>(b, n, wo, invAx, invAy);
-      case WardVariant::kWardGmd: return evaluateWard<WardVariant::kWardGmd>(b, n, wo, invAx, invAy);
-    }
+  const T invAx = T(1) / T(s.ax), invAy = T(1) / T(s.ay);
+  switch (s.variant) {
+    case WardVariant::kWard: return evaluateWard<WardVariant::kWard>(b, n, wo, invAx, invAy);
+    case WardVariant::kWardDur: return evaluateWard<WardVariant::kWardDur>(b, n, wo, invAx, invAy);
+    case WardVariant::kWardGmd: return evaluateWard<WardVariant::kWardGmd>(b, n, wo, invAx, invAy);
   }
 }
 

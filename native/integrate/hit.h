@@ -118,7 +118,8 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     const Vec3f wi = x.frame.toLocal(light[j].direction);
     batch.set(j, {T(wi.x), T(wi.y), T(wi.z)});
   }
-  evaluate<kSpec>(s, wo, batch, j);
+  const bool vectorised = specular && j >= kVectorised;
+  if (vectorised) evaluate(s, wo, batch, j);
 
   // One sample's share of an emitter's light, by MIS over the techniques of each integral.
   Rgb sum{0, 0, 0};
@@ -148,9 +149,12 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     ++counts.samples[t];
     const Vec3<T> wi = batch.wi(k);
     if (!(wi.z > T(0))) continue;  // below the surface: zero, and it counts
-    const Rgb fs = specular ? s.specular * static_cast<float>(batch.specular[k]) : Rgb{0, 0, 0};
-    const Rgb fd = diffuse ? s.diffuse * static_cast<float>(batch.diffuse[k]) : Rgb{0, 0, 0};
-    Fractions p{specular ? static_cast<float>(batch.lobe[k]) : 0.0f, diffuse ? static_cast<float>(batch.diffuse[k]) : 0.0f, 0.0f};
+    WardValue<T> ward{0, 0};
+    if (specular) ward = vectorised ? WardValue<T>{batch.specular[k], batch.lobe[k]} : evaluateWard(s, wi, wo);
+    const float cosine = static_cast<float>(wi.z) * (1 / kPi<float>);  // f_d cos for rho_d = 1, and p_2
+    const Rgb fs = s.specular * static_cast<float>(ward.fCos);
+    const Rgb fd = s.diffuse * cosine;
+    Fractions p{static_cast<float>(ward.pdf), diffuse ? cosine : 0.0f, 0.0f};
 
     if (t == kLight) {
       const LightSample& l = light[k];

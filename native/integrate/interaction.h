@@ -96,19 +96,10 @@ Interaction interact(const Scene& scene, const Geometry& geometry, const Ray& ra
   if (facing < kGrazing) ns = normalize(ns + x.wo * (kGrazing - facing));
   x.geometric = ng;
 
-  Vec2f uv{};
-  if constexpr ((N & kNeedsTextures) != 0)
-    if (!shape.part->uvs.empty()) uv = detail::interpolate(shape.part->uvs, i, hit.u, hit.v);
-  const auto color = [&](const ColorInput& c) {
-    if constexpr ((N & kNeedsTextures) != 0)
-      if (c.texture.texture >= 0) return c.value * sampleRgb(scene, c.texture, uv);
-    return c.value;
-  };
-  const auto alpha = [&](const ScalarInput& c) {
-    if constexpr ((N & kNeedsTextures) != 0)
-      if (c.texture.texture >= 0) return std::clamp(c.value * sampleScalar(scene, c.texture, uv), 1e-6f, 10.0f);
-    return c.value;
-  };
+  // UVs are in the file only where a texture is looked up (the reader leaves the others out).
+  const Vec2f uv = shape.part->uvs.empty() ? Vec2f{} : detail::interpolate(shape.part->uvs, i, hit.u, hit.v);
+  const auto color = [&](const ColorInput& c) { return c.texture.texture >= 0 ? evaluate(scene, c, uv) : c.value; };
+  const auto alpha = [&](const ScalarInput& c) { return c.texture.texture >= 0 ? evaluateAlpha(scene, c, uv) : c.value; };
   if constexpr ((N & kNeedsDiffuse) != 0) x.surface.diffuse = color(m.diffuse);
   if constexpr ((N & kNeedsSpecular) != 0) {
     x.surface.specular = color(m.specular);

@@ -14,9 +14,9 @@ namespace wardmis {
 enum Needs : uint32_t {
   kNeedsDiffuse = 1,
   kNeedsSpecular = 2,
-  kNeedsTextures = 4,
-  kNeedsBounces = 8,  // more than direct light
-  kKernelNeeds = 15,
+  kNeedsBounces = 4,  // more than direct light
+  kKernelNeeds = 7,
+  kNeedsTextures = 8,  // a branch that is always taken alike costs nothing: no kernel of its own
   // ... and bits that decide what is set up, sampled and written
   kNeedsLightSampling = 16,  // something emits that is worth aiming at
   kNeedsAllocation = 32,     // techniques that share an integral: there is something to allocate
