@@ -206,21 +206,21 @@ TEST(WardPatch, AgreesWithQuadrature) {
     const float rd = 0.3f, rs = in["rho_s"];
     scene.materials = {ward({rd, rd, rd}, {rs, rs, rs}, static_cast<float>(alpha), variant)};
     addPlane(scene, 100, 0);
-    addCosineSky(scene, 1024);
-    lookFrom(scene, static_cast<float>(theta * kPid / 180), 0.1f, 24);
+    addCosineSky(scene, 512);
+    lookFrom(scene, static_cast<float>(theta * kPid / 180), 0.1f, 16);
     const double integrand0 = c["expect"]["L_o_integrand"].get<double>() / in["R"].get<double>();
     const double diffuse = 2.0 / 3 * double(rd);
     const double want = in.value("joint", false) ? integrand0 : integrand0 + diffuse;  // joint cases have rho_d = 0.3 inside
     for (Integrand integrand : {Integrand::kSplit, Integrand::kJoint})
       for (AllocationRule rule : {AllocationRule::kEqual, AllocationRule::kVariance, AllocationRule::kSecondMoment, AllocationRule::kAlbedo}) {
-        RenderSettings s = settings(64);
+        RenderSettings s = settings(32);
         s.allocation = rule;
         s.integrand = integrand;
         s.sampler = SamplerType::kIndependent;
         s.samplesPerHit = 8;
         s.seed = 3;
         const Measured m = measure(renderScene(scene, s));
-        // the sky is interpolated from 1024 rows: 1e-5
+        // the sky is interpolated from 512 rows: 1e-5
         EXPECT_LT(std::abs(m.mean - want), 4 * m.error + 2e-5 * want) << model << ' ' << alpha << ' ' << theta << ' ' << name(integrand) << ' ' << name(rule) << " got " << m.mean << " +- " << m.error << " want " << want;
         ++checked;
       }

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A render as a whole: independent of threads, kernels and passes; stopped as asked; counted.
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+#include "integrate/passes.h"
+#include "math/error.h"
+#include "scenes.h"
+
+namespace wardmis {
+namespace {
+
+using namespace test;
+
+// Two plates under a sky image, a rectangle, a point and an emissive square: every part of the renderer.
+Scene mixedScene(int resolution = 24) {
+  Scene scene;
+  scene.materials = {ward({0.4f, 0.3f, 0.2f}, {0.3f, 0.3f, 0.3f}, 0.15f, WardVariant::kWardGmd), ward({0.5f, 0.5f, 0.5f}, {0, 0, 0}, 0.1f, WardVariant::kWard)};
+  Material lamp;
+  lamp.emission.value = {3, 2, 1};
+  scene.materials.push_back(lamp);
+  addPlane(scene, 3, 1);
+  addSphere(scene, 24, 0);
+  addPlane(scene, 0.4f, 2, 3);
+  addCosineSky(scene, 64);
+  Light area;
+  area.type = LightType::kArea;
+  area.emitted = {4, 4, 4};
+  area.toWorld.t = {1, 1, 2.5f};
+  Light point;
+  point.type = LightType::kPoint;
+  point.emitted = {2, 2, 2};
+  point.toWorld.t = {-2, 1, 2};
+  scene.lights = {area, point};
+  lookFrom(scene, 0.9f, 2, resolution);
+  return scene;
+}
+
+bool same(const FilmBuffer& a, const FilmBuffer& b) {
+  if (a.samples != b.samples || a.pixels.size() != b.pixels.size()) return false;
+  for (size_t i = 0; i < a.pixels.size(); ++i)
+    if (a.pixels[i].sum != b.pixels[i].sum || a.pixels[i].techniques != b.pixels[i].techniques || !(a.pixels[i].normal == b.pixels[i].normal)) return false;
+  return true;
+}
+
+RenderSettings quick() {
+  RenderSettings s;
+  s.spp = 12;
+  s.threads = 2;
+  return s;
+}
+
+TEST(Render, DoesNotDependOnThreads) {
+  const Scene scene = mixedScene();
+  for (SamplerType sampler : {SamplerType::kIndependent, SamplerType::kStratified, SamplerType::kSobol})
+    for (AllocationRule rule : {AllocationRule::kEqual, AllocationRule::kVariance, AllocationRule::kSecondMoment, AllocationRule::kAlbedo}) {
+      RenderSettings s = quick();
+      s.sampler = sampler;
+      s.allocation = rule;
+      s.threads = 1;
+      const FilmBuffer one = renderScene(scene, s);
+      for (int threads : {2, 7}) {
+        s.threads = threads;
+        EXPECT_TRUE(same(one, renderScene(scene, s))) << name(sampler) << ' ' << name(rule) << ' ' << threads;
+      }
+      s.seed = 1;
+      EXPECT_FALSE(same(one, renderScene(scene, s)));
+    }
+}
+
+// The kernel with everything compiled in gives the image of the one that the scene needs, for scenes that lack each part.
+TEST(Render, GeneralKernelGivesTheSameImage) {
+  for (int without = 0; without < 4; ++without)
+    for (Integrator integrator : {Integrator::kDirect, Integrator::kPath}) {
+      Scene scene = mixedScene();
+      if ((without & 1) != 0)
+        for (Material& m : scene.materials) m.diffuse.value = {0, 0, 0};
+      if ((without & 2) != 0)
+        for (Material& m : scene.materials) m.specular.value = {0, 0, 0};
+      RenderSettings s = quick();
+      s.integrator = integrator;
+      Statistics special, general;
+      const FilmBuffer a = renderScene(scene, s, &special);
+      s.generalKernel = true;
+      const FilmBuffer b = renderScene(scene, s, &general);
+      EXPECT_EQ(general.kernel, kKernelNeeds);
+      if (without != 0 || integrator == Integrator::kDirect) EXPECT_NE(special.kernel, general.kernel);
+      // not bit for bit: the two are compiled apart, and may round differently
+      for (size_t i = 0; i < a.pixels.size(); ++i) EXPECT_NEAR(a.mean(a.pixels[i]).x, b.mean(b.pixels[i]).x, 1e-4f * (1 + a.mean(a.pixels[i]).x)) << without;
+    }
+}
+
+// All allocations, weights and integrands estimate the same image: mean over the image against a reference of 64 times
+// the samples. 24 comparisons at |z| < 4: false alarm rate 1.5e-3; the seed is fixed.
+TEST(Render, EveryAllocationAgrees) {
+  const Scene scene = mixedScene(16);
+  const auto imageMean = [](const FilmBuffer& f) {
+    double mean = 0, variance = 0;
+    for (const Pixel& p : f.pixels) mean += double(luminance(f.mean(p))), variance += double(luminance(f.variance(p)));
+    const auto n = static_cast<double>(f.pixels.size());
+    return std::pair{mean / n, variance / n / n};
+  };
+  RenderSettings s = quick();
+  s.sampler = SamplerType::kIndependent;
+  s.spp = 2048;
+  s.allocation = AllocationRule::kAlbedo;
+  const auto [reference, referenceVariance] = imageMean(renderScene(scene, s));
+  s.spp = 96;
+  s.seed = 5;
+  s.samplesPerHit = 5;
+  for (AllocationRule rule : {AllocationRule::kEqual, AllocationRule::kVariance, AllocationRule::kSecondMoment, AllocationRule::kAlbedo})
+    for (WeightRule weights : {WeightRule::kBalance, WeightRule::kNonbalance, WeightRule::kPower})
+      for (Integrand integrand : {Integrand::kSplit, Integrand::kJoint}) {
+        s.allocation = rule;
+        s.weights = weights;
+        s.integrand = integrand;
+        const auto [mean, variance] = imageMean(renderScene(scene, s));
+        EXPECT_LT(std::abs(mean - reference) / std::sqrt(variance + referenceVariance), 4) << name(rule) << ' ' << name(weights) << ' ' << name(integrand) << ' ' << mean << ' ' << reference;
+      }
+}
+
+TEST(Render, CountsWhatItSpends) {
+  RenderSettings s = quick();
+  s.integrator = Integrator::kDirect;
+  s.samplesPerHit = 4;
+  Scene scene;
+  scene.materials = {ward({0.5f, 0.5f, 0.5f}, {0.2f, 0.2f, 0.2f}, 0.2f, WardVariant::kWardGmd)};
+  addPlane(scene, 50, 0);
+  addCosineSky(scene, 32);
+  lookFrom(scene, 0.4f, 1, 16);
+  Statistics stats;
+  const FilmBuffer film = renderScene(scene, s, &stats);
+  const uint64_t paths = 16 * 16 * 12;
+  EXPECT_EQ(film.samples, 12);
+  EXPECT_EQ(stats.counts.cameraRays, paths);
+  EXPECT_EQ(stats.counts.samples[0] + stats.counts.samples[1] + stats.counts.samples[2], 4 * paths);  // every path hits
+  EXPECT_TRUE(stats.allocated);
+  EXPECT_EQ(stats.counts.rare.total(), 0);
+}
+
+// Only what the scene needs: no pilot where there is nothing to allocate, and no techniques that nothing asks for.
+TEST(Render, LeavesOutWhatIsNotNeeded) {
+  Scene scene;
+  scene.materials = {ward({0.5f, 0.5f, 0.5f}, {0, 0, 0}, 0.2f, WardVariant::kWardGmd)};
+  addPlane(scene, 50, 0);
+  lookFrom(scene, 0.4f, 1, 8);
+  scene.world.radiance = {1, 1, 1};
+  Statistics sky;
+  renderScene(scene, quick(), &sky);
+  EXPECT_FALSE(sky.allocated);
+  EXPECT_EQ(sky.pilotSeconds, 0);
+  EXPECT_EQ(sky.techniques, maskOf(kCosine));
+  EXPECT_EQ(sky.counts.shadowRays + sky.counts.lobeRays, 0);
+
+  scene.world.radiance = {0, 0, 0};
+  Light point;
+  point.emitted = {2, 2, 2};
+  point.toWorld.t = {0, 1, 2};
+  scene.lights = {point};
+  RenderSettings direct = quick();
+  direct.integrator = Integrator::kDirect;
+  Statistics delta;
+  renderScene(scene, direct, &delta);
+  EXPECT_FALSE(delta.allocated);
+  EXPECT_EQ(delta.techniques, maskOf(kLight));
+  EXPECT_EQ(delta.counts.cosineRays, 0);
+  EXPECT_EQ(passesFor(delta.techniques).size(), 6);  // one allocation map
+}
+
+TEST(Render, StopsAfterSeconds) {
+  RenderSettings s = quick();
+  s.seconds = 0.5;
+  Scene scene = mixedScene(32);
+  Statistics stats;
+  const auto start = std::chrono::steady_clock::now();
+  const FilmBuffer film = renderScene(scene, s, &stats);
+  const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  EXPECT_GT(film.samples, s.pilotSpp);
+  EXPECT_LT(took, 5);  // generous: the machine may be busy
+  EXPECT_GT(stats.pilotSeconds + stats.renderSeconds, 0.2);
+}
+
+TEST(Render, StopsWhenAsked) {
+  const Scene scene = mixedScene(64);
+  for (Stop how : {Stop::kKeep, Stop::kDiscard}) {
+    RenderSettings s = quick();
+    s.spp = 1 << 20;
+    std::atomic<Stop> stop{Stop::kNo};
+    RenderObserver observer;
+    observer.stop = &stop;
+    observer.image = [&](const FilmBuffer& f) {
+      if (f.samples > s.pilotSpp) stop = how;
+    };
+    Statistics stats;
+    const FilmBuffer film = render(scene, s, stats, observer);
+    EXPECT_LT(film.samples, s.spp);
+    EXPECT_GE(film.samples, s.pilotSpp);
+  }
+}
+
+TEST(Render, WantsACamera) {
+  Scene scene = mixedScene();
+  scene.camera.reset();
+  Statistics stats;
+  EXPECT_THROW(render(scene, quick(), stats), Error);
+}
+
+}  // namespace
+}  // namespace wardmis
