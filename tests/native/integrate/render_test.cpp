@@ -199,6 +199,75 @@ TEST(Render, StopsWhenAsked) {
   }
 }
 
+// Instances of a shared mesh look like copies of it: moved, turned, mirrored and stretched, smooth normals and emission
+// included.
+TEST(Render, InstancesAreCopies) {
+  Scene copies;
+  copies.materials = mixedScene().materials;
+  copies.world.radiance = {0.5f, 0.5f, 0.5f};
+  addSphere(copies, 12, 0);
+  addPlane(copies, 0.5f, 2, 2);
+  lookFrom(copies, 0.9f, 3, 24);
+  Scene instanced = copies;
+  const Affine moves[] = {{{0.5f, 0, 0}, {0, 0.8f, 0.2f}, {0, -0.1f, 1}, {1, 1, 0}}, {{-1, 0, 0}, {0, 0.5f, 0}, {0.3f, 0, 0.7f}, {-1, -1, 0.2f}}};
+  copies.instances.clear();
+  instanced.instances.clear();
+  for (const Affine& move : moves)
+    for (int mesh : {0, 1}) {
+      Instance i;
+      i.toWorld = move;
+      i.mesh = mesh;
+      instanced.instances.push_back(i);
+      copies.meshes.push_back(copies.meshes[static_cast<size_t>(mesh)]);
+      i.mesh = static_cast<int>(copies.meshes.size()) - 1;
+      copies.instances.push_back(i);
+    }
+  RenderSettings s = quick();
+  s.spp = 256;
+  s.sampler = SamplerType::kIndependent;
+  const FilmBuffer a = renderScene(copies, s), b = renderScene(instanced, s);
+  double sumA = 0, sumB = 0, variance = 0;
+  for (size_t i = 0; i < a.pixels.size(); ++i) {
+    sumA += double(luminance(a.mean(a.pixels[i]))), sumB += double(luminance(b.mean(b.pixels[i])));
+    variance += double(luminance(a.variance(a.pixels[i]))) + double(luminance(b.variance(b.pixels[i])));
+    EXPECT_NEAR(a.pixels[i].depth, b.pixels[i].depth, 1e-3f * a.pixels[i].depth) << i;
+    EXPECT_LT(length(a.pixels[i].normal - b.pixels[i].normal), 2.0f) << i;  // of a sum over 256 samples
+  }
+  EXPECT_LT(std::abs(sumA - sumB), 4 * std::sqrt(variance));
+}
+
+// What is hidden from a kind of ray is not met by it, as a placed copy and as an instance.
+TEST(Render, RespectsVisibility) {
+  for (bool shared : {false, true})
+    for (const uint8_t hidden : {kSeenByCamera, kSeenByDiffuse, kCastsShadow}) {
+      const auto mean = [&](bool object) {
+        Scene scene;
+        scene.materials = {ward({0.5f, 0.5f, 0.5f}, {0, 0, 0}, 0.1f, WardVariant::kWard), ward({0, 0, 0}, {0, 0, 0}, 0.1f, WardVariant::kWard)};
+        addPlane(scene, 50, 0);
+        addPlane(scene, 20, 1, 1);  // a black lid
+        if (shared) scene.instances.push_back(scene.instances.back()), scene.instances.back().toWorld.t.z = 0.5f;
+        for (size_t i = 1; i < scene.instances.size(); ++i) scene.instances[i].visibility = static_cast<uint8_t>(kSeenByAll & ~hidden);
+        if (!object) scene.instances.resize(1), scene.meshes.resize(1);
+        // the sky is found by diffuse rays alone, the sun by shadow rays alone
+        if (hidden == kCastsShadow) {
+          Light sun;
+          sun.type = LightType::kSun;
+          scene.lights = {sun};
+        } else {
+          scene.world.radiance = {1, 1, 1};
+        }
+        lookFrom(scene, 0.2f, 0.5f, 8);
+        if (hidden != kSeenByCamera) scene.camera->toWorld.t = scene.camera->toWorld.z * 0.3f;  // under the lid
+        RenderSettings s = quick();
+        s.integrator = Integrator::kDirect;
+        const FilmBuffer film = renderScene(scene, s);
+        // hidden from the camera: the lid still keeps the sky away
+        return hidden == kSeenByCamera ? double(film.pixels[0].depth) : measure(film).mean;
+      };
+      EXPECT_NEAR(mean(true), mean(false), 1e-3 * mean(false)) << int{hidden} << ' ' << shared;
+    }
+}
+
 TEST(Render, WantsACamera) {
   Scene scene = mixedScene();
   scene.camera.reset();
