@@ -152,7 +152,7 @@ def main() -> int:
     parser.add_argument("scenes", nargs="*", default=SCENES, help="names of files in blend/ (default: %(default)s)")
     parser.add_argument("--out", type=Path, default=ROOT / "out" / "demo")
     parser.add_argument("--samples", type=int, default=32, help="camera samples per pixel (%(default)s)")
-    parser.add_argument("--reference-samples", type=int, default=1024, help="of the reference (%(default)s)")
+    parser.add_argument("--reference-samples", type=int, default=512, help="of the reference (%(default)s)")
     parser.add_argument("--percentage", type=int, default=50, help="of the scenes' resolution (%(default)s)")
     arguments = parser.parse_args()
     effort = Effort(arguments.percentage, arguments.samples, arguments.reference_samples)
