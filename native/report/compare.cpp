@@ -8,22 +8,26 @@
 #include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>
 #include <ImfPartType.h>
+#include <ImfTestFile.h>
 #include <fmt/format.h>
-#include <png.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <string>
-#include <string_view>
+#include <stdexcept>
 
 #include "film/exr.h"
 #include "film/write_file.h"
+#include "image/oiio.h"
 #include "math/error.h"
+#include "scene/glb_file.h"
+#include "scene/image_file.h"
+#include "scene/texture.h"
 
 namespace wardmis {
 namespace {
+
+constexpr const char* kNameAnExr = "name an .exr for the errors as they are";
 
 // What stands before "R", "G" and "B" in the names of the channels of `layer`; "-" if they are not there.
 std::string prefixOfRgb(const Imf::ChannelList& channels, const std::string& layer) {
@@ -71,64 +75,34 @@ RgbImage readExrRgb(const std::filesystem::path& path, const std::string& layer)
               "give an OpenEXR file, for example one that 'wardmis render' wrote");
 }
 
-// ---- pictures -------------------------------------------------------------------------------------------------------
-
-using Colour = std::array<uint8_t, 3>;
-
-// "inferno" of matplotlib at equal steps, t in 0..1.
-Colour falseColour(double t) {
-  static constexpr double steps[9][3] = {{0, 0, 4},     {31, 12, 72},   {85, 15, 109},  {136, 34, 106}, {186, 54, 85},
-                                         {227, 89, 51}, {249, 140, 10}, {249, 201, 50}, {252, 255, 164}};
-  const double at = std::clamp(t, 0.0, 1.0) * 8;
-  const auto i = std::min<size_t>(7, static_cast<size_t>(at));
-  Colour out{};
-  for (size_t c = 0; c < 3; ++c)
-    out[c] = static_cast<uint8_t>(std::lround(steps[i][c] + (steps[i + 1][c] - steps[i][c]) * (at - double(i))));
-  return out;
+RgbImage readOtherRgb(const std::filesystem::path& path) try {
+  FileImage file = readImageFile(mapFile(path).data);
+  Image& from = file.image;
+  from.srgb = file.integers;
+  RgbImage image{from.width, from.height, {}};
+  image.rgb.reserve(static_cast<size_t>(from.width) * static_cast<size_t>(from.height) * 3);
+  for (int y = from.height - 1; y >= 0; --y)
+    for (int x = 0; x < from.width; ++x) {
+      const Rgb texel = texelRgb(from, static_cast<size_t>(y) * static_cast<size_t>(from.width) + static_cast<size_t>(x));
+      for (const float v : {texel.x, texel.y, texel.z})
+        image.rgb.push_back(file.integers && !from.floats.empty() ? srgbToLinear(v) : v);
+    }
+  return image;
+} catch (const Error&) {
+  throw;
+} catch (const std::runtime_error& e) {
+  throw Error(ExitCode::kFile, fmt::format("{}: {}", path.string(), e.what()), "save it again as PNG, JPEG or OpenEXR");
 }
 
-struct Picture {
-  int width, height;
-  std::vector<uint8_t> rgb = std::vector<uint8_t>(static_cast<size_t>(width) * static_cast<size_t>(height) * 3);
-
-  void set(int x, int y, const Colour& colour) {
-    if (x < 0 || x >= width || y < 0 || y >= height) return;
-    std::copy(colour.begin(), colour.end(), rgb.begin() + (std::ptrdiff_t{y} * width + x) * 3);
-  }
-};
-
-// Figures, in characters of 3 x 5 dots (15 bits, the first row's left dot highest) that are twice as large on the picture.
-void write(Picture& picture, int x, int y, std::string_view text, const Colour& colour) {
-  static constexpr std::string_view characters = "0123456789.e+-";
-  static constexpr uint16_t dots[] = {0x7b6f, 0x2c97, 0x73e7, 0x73cf, 0x5bc9, 0x79cf, 0x79ef,
-                                      0x7249, 0x7bef, 0x7bcf, 0x0002, 0x0fe7, 0x05d0, 0x01c0};
-  for (const char c : text) {
-    const size_t at = characters.find(c);
-    for (int dot = 0; at != std::string_view::npos && dot < 4 * 15; ++dot)
-      if (dots[at] >> (14 - dot / 4) & 1)
-        picture.set(x + dot / 4 % 3 * 2 + dot % 2, y + dot / 4 / 3 * 2 + dot / 2 % 2, colour);
-    x += 8;
-  }
-}
-
-std::string encodePng(const Picture& picture) {
-  png_image png{};
-  png.version = PNG_IMAGE_VERSION;
-  png.width = static_cast<png_uint_32>(picture.width);
-  png.height = static_cast<png_uint_32>(picture.height);
-  png.format = PNG_FORMAT_RGB;
-  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
-  std::string bytes(size, '\0');
-  if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, picture.rgb.data(), 0, nullptr))
-    throw Error(ExitCode::kFile, fmt::format("a picture cannot be encoded as PNG: {}", png.message));
-  bytes.resize(size);
-  return bytes;
+// What a function of the module says is wrong.
+void check(const std::filesystem::path& path, const char* wrong) {
+  if (wrong) throw Error(ExitCode::kFile, fmt::format("{}: cannot be drawn: {}", path.string(), wrong), kNameAnExr);
 }
 
 }  // namespace
 
 RgbImage readRgb(const std::filesystem::path& path, const std::string& layer) {
-  RgbImage image = readExrRgb(path, layer);
+  RgbImage image = Imf::isOpenExrFile(path.c_str()) ? readExrRgb(path, layer) : readOtherRgb(path);
   size_t bad = 0, first = 0;
   for (size_t i = 0; i < image.rgb.size(); ++i)
     if (!std::isfinite(image.rgb[i]) && bad++ == 0) first = i / 3;
@@ -169,7 +143,8 @@ ImageError compareImages(const RgbImage& image, const RgbImage& reference) {
   return e;
 }
 
-void writeDifference(const std::filesystem::path& path, const RgbImage& image, const RgbImage& reference, double scale) {
+std::string writeDifference(const std::filesystem::path& path, const RgbImage& image, const RgbImage& reference,
+                            double scale) {
   const int w = image.width, h = image.height;
   std::vector<float> error(static_cast<size_t>(w) * static_cast<size_t>(h));
   for (size_t i = 0; i < error.size(); ++i) {
@@ -178,18 +153,38 @@ void writeDifference(const std::filesystem::path& path, const RgbImage& image, c
       sum += std::abs(double(image.rgb[c]) - double(reference.rgb[c])) / (std::abs(double(reference.rgb[c])) + kMapeEpsilon);
     error[i] = static_cast<float>(sum / 3);
   }
-  if (path.extension() == ".exr") return writeExr(path, {w, h, {{"Y", std::move(error)}}, {}}, true);
+  if (path.extension() == ".exr") {
+    writeExr(path, {w, h, {{"Y", std::move(error)}}, {}}, true);
+    return {};
+  }
 
-  Picture picture{w, h + 24};
-  for (int y = 0; y < h; ++y)
-    for (int x = 0; x < w; ++x)
-      picture.set(x, y, falseColour(double(error[static_cast<size_t>(y) * static_cast<size_t>(w) + static_cast<size_t>(x)]) / scale));
-  for (int y = h + 8; y < h + 24; ++y)
-    for (int x = 0; x < w; ++x) picture.set(x, y, falseColour((x + 0.5) / w));
-  const std::string top = fmt::format("{:.3g}", scale);
-  write(picture, 4, h + 11, "0", {255, 255, 255});
-  write(picture, w - 4 - 8 * static_cast<int>(top.size()), h + 11, top, {0, 0, 0});
-  writeFile(path, encodePng(picture));
+  // The errors, a black gap, and a bar from 0 to `scale`.
+  constexpr int kGap = 8, kBar = 16, kFigures = 13;
+  for (float& e : error) e = static_cast<float>(std::min(double(e) / scale, 1.0));
+  error.resize(static_cast<size_t>(w) * static_cast<size_t>(h + kGap));
+  for (int i = 0; i < w * kBar; ++i) error.push_back((static_cast<float>(i % w) + 0.5f) / static_cast<float>(w));
+  const OiioInterface& module = [&]() -> const OiioInterface& {
+    try {
+      return oiio();
+    } catch (const std::runtime_error& e) {
+      throw Error(ExitCode::kFile, fmt::format("{}: no picture can be drawn: {}", path.string(), e.what()), kNameAnExr);
+    }
+  }();
+  const int height = h + kGap + kBar, middle = h + kGap + kBar / 2;
+  std::vector<uint8_t> rgb(error.size() * 3);
+  check(path, module.colourMap("inferno", error.data(), static_cast<int>(error.size()), rgb.data()));
+  std::string note;
+  const auto figure = [&](const std::string& text, int x, bool endsAtX, float grey) {
+    if (const char* wrong = module.drawText(rgb.data(), w, height, x, middle, endsAtX, kFigures, text.c_str(), grey))
+      note = fmt::format("{}: the bar of colours, which ends at {}, has no figures: {}", path.string(), scale, wrong);
+  };
+  figure("0", 4, false, 1);
+  figure(fmt::format("{:.3g}", scale), w - 4, true, 0);
+  const void* bytes = nullptr;
+  size_t size = 0;
+  check(path, module.encode(path.c_str(), rgb.data(), w, height, &bytes, &size));
+  writeFile(path, {static_cast<const char*>(bytes), size});
+  return note;
 }
 
 }  // namespace wardmis

@@ -43,7 +43,7 @@ class ImageBudget {
   std::atomic<uint64_t> left_;  // images are decoded in parallel
 };
 
-// A PNG, JPEG, OpenEXR or Radiance HDR file, told by its first bytes.
+// An image file, told by its first bytes; see image_file.h.
 DecodedImage decodeImage(std::span<const std::byte> file, ColorSpace space, ImageBudget& budget);
 
 // Raw pixels of 8 bits or 32-bit floats, rows from the bottom: exactly width * height * channels values.

@@ -14,13 +14,13 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <csetjmp>
-#include <cstdio>
 #include <cstring>
 #include <memory>
 #include <stdexcept>
 #include <string_view>
+
+#include "image/oiio.h"
 
 namespace wardmis {
 namespace {
@@ -193,82 +193,34 @@ FileImage decodeExr(Bytes file) try {
   fail(std::string("is a damaged OpenEXR file: ") + e.what());
 }
 
-// ---- Radiance HDR ---------------------------------------------------------------------------------------------------
+// ---- everything else ------------------------------------------------------------------------------------------------
 
-// G. Ward, Real Pixels (1991): a text header, "-Y height +X width", then rows of RGBE, flat or run-length coded.
-class HdrReader {
- public:
-  explicit HdrReader(Bytes file) : file_(file) {}
-
-  FileImage read() {
-    std::string text;
-    bool rgbe = true;
-    while (!(text = line()).empty())
-      if (text.starts_with("FORMAT=")) rgbe = text == "FORMAT=32-bit_rle_rgbe";
-    if (!rgbe) fail("is a Radiance file in another format than 32-bit_rle_rgbe");
-    text = line();
-    int width = 0, height = 0;
-    if (std::sscanf(text.c_str(), "-Y %d +X %d", &height, &width) != 2)
-      fail("is a Radiance file whose size reads '" + text.substr(0, 40) + "'; '-Y height +X width' is expected");
-    Image image = sized(file_, width, height, 3);
+FileImage decodeThroughOiio(Bytes file) {
+  const std::string foreign = "is neither PNG, JPEG nor OpenEXR, and ";
+  const OiioInterface& module = [&]() -> const OiioInterface& {
+    try {
+      return oiio();
+    } catch (const std::runtime_error& e) {
+      fail(foreign + e.what());
+    }
+  }();
+  const auto check = [&](const char* wrong) {
+    if (wrong) fail(foreign + "cannot be read otherwise: " + wrong);
+  };
+  OiioReader* opened = nullptr;
+  OiioFormat format{};
+  check(module.open(file.data(), file.size(), &opened, &format));
+  const std::unique_ptr<OiioReader, void (*)(OiioReader*)> reader(opened, module.close);
+  Image image = sized(file, format.width, format.height, format.channels);
+  if (format.floats) {
     image.floats.resize(valueCount(image));
-    std::vector<uint8_t> row(size_t(width) * 4);
-    for (int y = height - 1; y >= 0; --y) {
-      readRow(row);
-      float* out = image.floats.data() + size_t(y) * width * 3;
-      for (int x = 0; x < width; ++x)
-        for (int c = 0; c < 3; ++c) {
-          const uint8_t* p = row.data() + size_t(x) * 4;
-          out[x * 3 + c] = p[3] ? std::ldexp(float(p[c]), p[3] - 136) : 0.0f;
-        }
-    }
-    return {std::move(image), false};
+    check(module.read(opened, image.floats.data()));
+  } else {
+    image.bytes.resize(valueCount(image));
+    check(module.read(opened, image.bytes.data()));
   }
-
- private:
-  uint8_t byte() {
-    if (position_ >= file_.size()) fail("is a damaged Radiance file: it ends too early");
-    return std::to_integer<uint8_t>(file_[position_++]);
-  }
-  std::array<uint8_t, 4> pixel() { return {byte(), byte(), byte(), byte()}; }  // braces: left to right
-  std::string line() {
-    std::string text;
-    for (uint8_t c = byte(); c != '\n'; c = byte()) text += static_cast<char>(c);
-    return text;
-  }
-  void readRow(std::vector<uint8_t>& row) {
-    const size_t width = row.size() / 4;
-    const std::array<uint8_t, 4> head = pixel();
-    if (head[0] != 2 || head[1] != 2 || size_t(head[2] << 8 | head[3]) != width) return readFlatRow(row, head);
-    for (size_t channel = 0; channel < 4; ++channel)
-      for (size_t x = 0; x < width;) {
-        const uint8_t code = byte();
-        const bool run = code > 128;
-        const size_t count = run ? code - 128 : code;
-        if (count == 0 || count > width - x) fail("is a damaged Radiance file: a run leaves its row");
-        const uint8_t value = run ? byte() : 0;
-        for (size_t i = 0; i < count; ++i) row[(x++) * 4 + channel] = run ? value : byte();
-      }
-  }
-
-  // Pixel after pixel; (1, 1, 1, n) repeats the one before n times, further ones n << 8, n << 16 ...
-  void readFlatRow(std::vector<uint8_t>& row, std::array<uint8_t, 4> next) {
-    const size_t width = row.size() / 4;
-    int shift = 0;
-    for (size_t x = 0; x < width; next = x < width ? pixel() : next) {
-      const bool repeat = next[0] == 1 && next[1] == 1 && next[2] == 1;
-      const size_t count = repeat ? size_t(next[3]) << shift : 1;
-      if (count > width - x || (repeat && x == 0) || shift > 24)
-        fail("is a damaged Radiance file: a run leaves its row");
-      const uint8_t* source = repeat ? row.data() + (x - 1) * 4 : next.data();
-      for (size_t i = 0; i < count; ++i, ++x) std::copy_n(source, 4, row.data() + x * 4);
-      shift = repeat ? shift + 8 : 0;
-    }
-  }
-
-  Bytes file_;
-  size_t position_ = 0;
-};
+  return {std::move(image), format.integers};
+}
 
 bool startsWith(Bytes file, std::string_view magic) {
   return file.size() >= magic.size() && std::memcmp(file.data(), magic.data(), magic.size()) == 0;
@@ -281,8 +233,8 @@ FileImage readImageFile(Bytes file) {
   if (startsWith(file, "\x89PNG\r\n\x1A\n"sv)) return decodePng(file);
   if (startsWith(file, "\xFF\xD8\xFF"sv)) return decodeJpeg(file);
   if (startsWith(file, "\x76\x2F\x31\x01"sv)) return decodeExr(file);
-  if (startsWith(file, "#?"sv)) return HdrReader(file).read();
-  fail("is not a PNG, JPEG, OpenEXR or Radiance HDR file");
+  if (file.empty()) fail("is empty");
+  return decodeThroughOiio(file);
 }
 
 }  // namespace wardmis

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads the image files of a scene: PNG, JPEG, OpenEXR and Radiance HDR, told apart by their first bytes.
-// Through the formats' own libraries: linking OpenImageIO costs every start of the command 0.25 s and the package 330 MB.
+// Reads the image files of a scene, told apart by their first bytes: PNG, JPEG and OpenEXR, which every copy of the
+// command must read, through their own libraries, all others through OpenImageIO where the command comes with it.
 #pragma once
 
 #include <cstddef>

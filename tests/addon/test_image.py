@@ -45,7 +45,6 @@ class Images(unittest.TestCase):
             ("PNG", False, "image/png"),
             ("JPEG", False, "image/jpeg"),
             ("OPEN_EXR", True, "image/x-exr"),
-            ("HDR", True, "image/vnd.radiance"),
         )
         for file_format, is_float, mime_type in cases:
             with self.subTest(file_format):
@@ -62,6 +61,12 @@ class Images(unittest.TestCase):
         self.assertIsNone(data.encoded)
         self.assertEqual((data.pixels.dtype, data.pixels.shape[:2], data.color_space), (np.uint8, (1, 2), "sRGB"))
         self.assertEqual(data.pixels[0, 0, :3].tolist(), [51, 102, 153])
+
+        image, _ = self.file("HDR", is_float=True)
+        data = export_image(image)
+        self.assertIsNone(data.encoded)
+        self.assertEqual((data.pixels.dtype, data.pixels.shape[:2], data.color_space), (np.float32, (1, 2), "linear"))
+        np.testing.assert_allclose(data.pixels[0, 0, :3], (0.2, 0.4, 0.6), rtol=0.02)  # 8 bits below the largest
 
     def test_generated_images_become_pixels(self):
         data = export_image(self.generated(is_float=False))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's images -> the bytes of their files where the renderer reads those itself, else pixels. Nothing is saved or packed."""
+"""Blender's images -> the bytes of their files where every renderer reads those, else pixels. Nothing is saved or packed."""
 
 from __future__ import annotations
 
@@ -14,13 +14,11 @@ import numpy as np
 from .emission import MISSING
 from .model import ImageData
 
-# how files begin that the renderer reads
+# How files begin that the renderer reads without OpenImageIO, which the packaged one does not have.
 SIGNATURES = (
     (b"\x89PNG\r\n\x1a\n", "image/png"),
     (b"\xff\xd8\xff", "image/jpeg"),
     (b"\x76\x2f\x31\x01", "image/x-exr"),
-    (b"#?RADIANCE", "image/vnd.radiance"),
-    (b"#?RGBE", "image/vnd.radiance"),
 )
 COLOR_SPACES = {"sRGB": "sRGB", "Linear": "linear", "Linear Rec.709": "linear", "Non-Color": "linear", "Raw": "linear"}
 MOVING = {"SEQUENCE", "MOVIE"}

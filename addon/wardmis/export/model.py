@@ -22,7 +22,7 @@ class ImageData:
     name: str
     color_space: str = "sRGB"  # how to decode: "sRGB" or "linear"
     encoded: bytes | None = None  # the bytes of a file of type `mime_type`
-    mime_type: str = ""  # image/png, image/jpeg, image/x-exr, image/vnd.radiance
+    mime_type: str = ""  # image/png, image/jpeg, image/x-exr
     pixels: np.ndarray | None = None  # (height, width, channels 1..4), uint8 or float32, rows from the bottom
 
 

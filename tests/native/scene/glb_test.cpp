@@ -696,7 +696,7 @@ TEST(Glb, RefusesHostileScenes) {
       {"its emission is not a number", material({{"emissiveFactor", {1e30, 0, 0}}, {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 1e30}}}}}})},
       {"images[0] 'Wood' .uri: 'wood.png' cannot be read: No such file or directory (needed by material 'Plate')", image({{"name", "Wood"}, {"uri", "wood.png"}})},
       {"images[0]: expected either uri or bufferView (", image(json::object())},
-      {"images[0]: is not a PNG", image({{"bufferView", 0}})},
+      {"images[0]: is neither PNG, JPEG nor OpenEXR, and", image({{"bufferView", 0}})},
       {"images[0]: 3 x 3 pixels of 1 channels need 9 bytes, found 48 (needed by material 'Plate')",
        image({{"bufferView", 0}, {"mimeType", "application/x-wardmis-pixels"}, {"extensions", {{"WARDMIS_scene", {{"width", 3}, {"height", 3}, {"channels", 1}, {"type", "u8"}}}}}})},
       {"images[0].extensions.WARDMIS_scene.width: expected a whole number from 1 to 65536, found 2147483648",

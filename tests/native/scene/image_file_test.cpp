@@ -152,24 +152,64 @@ TEST(ImageFile, ExrIsReadInFullRange) {
   EXPECT_THROW(readImageFile(exrFile({"depth.Z"})), std::runtime_error);
 }
 
-TEST(ImageFile, RadianceFlatAndRunLengthCoded) {
+// Through OpenImageIO. 2 pixels of Radiance's flat rows: (128, 64, 32) * 2^(130 - 136).
+TEST(ImageFile, Radiance) {
+  if (!WARDMIS_WITH_OIIO) GTEST_SKIP() << "built without OpenImageIO";
   using namespace std::string_literals;
-  const std::string head = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X ";
-  // flat: 2 pixels a row; (128, 64, 32) * 2^(130 - 136)
-  const File flat = bytesOf(head + "2\n\x80\x40\x20\x82\0\0\0\0\x01\x02\x03\x88\x80\x80\x80\x81"s);
-  const Image image = readImageFile(flat).image;
-  EXPECT_EQ(image.floats, (std::vector<float>{1, 2, 3, 1, 1, 1, 2, 1, 0.5f, 0, 0, 0}));
-  // runs: 8 pixels of (128, 64, 32), exponent 130; the second row's red differs in its last pixel
-  const std::string runs = "\x02\x02\0\x08"s + "\x88\x80\x88\x40\x88\x20\x88\x82"s;
-  const std::string other = "\x02\x02\0\x08"s + "\x87\x80\x01\xff\x88\x40\x88\x20\x88\x82"s;
-  const Image coded = readImageFile(bytesOf(head + "8\n" + runs + other)).image;
-  ASSERT_EQ(coded.floats.size(), 48u);
-  EXPECT_EQ(coded.floats[7 * 3], 255.0f / 64);
-  EXPECT_EQ(coded.floats[8 * 3 + 7 * 3], 2.0f);
-  EXPECT_EQ(coded.floats[1], 1.0f);
-  // the old repetition of the pixel before
-  const File old = bytesOf(head + "4\n" + "\x80\x40\x20\x82\x01\x01\x01\x03"s + "\x80\x40\x20\x82\x01\x01\x01\x03"s);
-  EXPECT_EQ(readImageFile(old).image.floats.at(3 * 3), 2.0f);
+  const FileImage read = readImageFile(bytesOf(
+      "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 2\n\x80\x40\x20\x82\0\0\0\0\x01\x02\x03\x88\x80\x80\x80\x81"s));
+  EXPECT_FALSE(read.integers);
+  EXPECT_EQ(read.image.channels, 3);
+  EXPECT_EQ(read.image.floats, (std::vector<float>{1, 2, 3, 1, 1, 1, 2, 1, 0.5f, 0, 0, 0}));
+}
+
+// One strip without compression: kWidth x kHeight pixels of valueAt, `bits` each.
+File tiffFile(uint16_t channels, uint16_t bits) {
+  File file = bytesOf(std::string_view("II*\0\x08\0\0\0", 8));
+  const auto put = [&](uint32_t value, int bytes) {
+    for (int i = 0; i < bytes; ++i) file.push_back(std::byte(value >> 8 * i & 0xFF));
+  };
+  const uint32_t size = kWidth * kHeight * channels * bits / 8, entries = channels == 4 ? 10 : 9;
+  const uint32_t bitsAt = 8 + 2 + 12 * entries + 4, pixelsAt = bitsAt + 2 * channels;
+  put(entries, 2);
+  const auto entry = [&](uint32_t tag, uint32_t type, uint32_t count, uint32_t value) {
+    put(tag, 2), put(type, 2), put(count, 4), put(value, 4);
+  };
+  constexpr uint32_t kShort = 3, kLong = 4;
+  entry(256, kShort, 1, kWidth);
+  entry(257, kShort, 1, kHeight);
+  entry(258, kShort, channels, bitsAt);
+  entry(259, kShort, 1, 1);  // no compression
+  entry(262, kShort, 1, 2);  // RGB
+  entry(273, kLong, 1, pixelsAt);
+  entry(277, kShort, 1, channels);
+  entry(278, kShort, 1, kHeight);
+  entry(279, kLong, 1, size);
+  if (channels == 4) entry(338, kShort, 1, 2);  // straight alpha
+  put(0, 4);
+  for (int c = 0; c < channels; ++c) put(bits, 2);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      for (int c = 0; c < channels; ++c) put(uint32_t(valueAt(y, x, c)) * (bits == 16 ? 257 : 1), bits / 8);
+  return file;
+}
+
+TEST(ImageFile, TiffKeepsItsBytesAndRowsStartAtTheBottom) {
+  if (!WARDMIS_WITH_OIIO) GTEST_SKIP() << "built without OpenImageIO";
+  for (const uint16_t channels : {3, 4}) {
+    const FileImage bytes = readImageFile(tiffFile(channels, 8)), words = readImageFile(tiffFile(channels, 16));
+    EXPECT_TRUE(bytes.integers && words.integers);
+    ASSERT_EQ(bytes.image.channels, channels);
+    ASSERT_EQ(bytes.image.bytes.size(), size_t(kWidth * kHeight * channels));
+    ASSERT_EQ(words.image.floats.size(), bytes.image.bytes.size());
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x)
+        for (int c = 0; c < channels; ++c) {
+          const size_t i = size_t(((kHeight - 1 - y) * kWidth + x) * channels + c);
+          EXPECT_EQ(bytes.image.bytes[i], valueAt(y, x, c));
+          EXPECT_NEAR(words.image.floats[i], float(valueAt(y, x, c)) / 255, 1e-6f);
+        }
+  }
 }
 
 TEST(ImageFile, DamageIsAnError) {
@@ -179,8 +219,8 @@ TEST(ImageFile, DamageIsAnError) {
       {"text", bytesOf("hello")},
       {"hugePng", bytesOf("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\x0f\0\0\0\x0f\0\0\x08\x06\0\0\0\0\0\0\0"s)},
       {"hugeHdr", bytesOf("#?RADIANCE\n\n-Y 999999 +X 999999\n")},
-      {"runHdr", bytesOf("#?RADIANCE\n\n-Y 1 +X 8\n\x02\x02\0\x08\x89\x80"s)},
       {"emptyHdr", bytesOf("#?RADIANCE\n\n-Y 0 +X 0\n")},
+      {"cutHdr", bytesOf("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 8\n\x02\x02\0\x08\x88"s)},
   };
   for (const File& whole : {pngFile(PNG_FORMAT_RGB), exrFile({"R", "G", "B"})})
     for (size_t size = 4; size + 13 < whole.size(); size += 7)
