@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Blender's lights, in watts, -> radiance, intensity or irradiance as Cycles of the same version renders them.
 
-Cycles before 4.0 normalised area lights by 1/4 where later ones use 1/pi, dimmed spots by the cosine to their axis, and took a sun's
-disk for a flat one. Blender's scene unit scale does not enter.
+Cycles before 4.0 normalised area lights by 1/4 where later ones use 1/pi, dimmed spots by the cosine to their axis, did not scale
+their cones, and took a sun's disk for a flat one. Blender's scene unit scale does not enter.
 """
 
 from __future__ import annotations
@@ -81,6 +81,9 @@ def _spot(light: Any, power: float, data: LightData) -> None:
     data.angle = light.spot_size
     data.blend = light.spot_blend
     data.cosine = not compat.LIGHTS_OF_4_0
+    if not compat.LIGHTS_OF_4_0:  # the cone was always a round one
+        data.matrix = data.matrix.copy()
+        data.matrix[:3, :3] /= np.maximum(np.linalg.norm(data.matrix[:3, :3], axis=0), 1e-30)
 
 
 def _sun(light: Any, power: float, data: LightData) -> None:
