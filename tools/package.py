@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Packs the add-on with the renderer inside: one zip that Blender installs as a legacy add-on and, from 4.2, as an
-extension. The shared libraries that not every machine has lie beside the command, so that Blender alone is enough:
+extension. The shared libraries that not every machine has lie beside the command, so that Blender alone is enough. The
+module for OpenImageIO stays out: the exporter hands on no image that needs it.
 
 package.py --binary BINARY --out FOLDER"""
 

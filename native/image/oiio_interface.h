@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the module wardmis_oiio gives to the command: plain C, so that neither types of C++ nor exceptions cross between
-// them. A function returns null, or else what is wrong; that text, and encoded bytes, live until the thread's next call.
+// them. A function returns null, or else what is wrong; that text, and encoded bytes, live until the thread's next
+// call.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +14,7 @@ struct OiioReader;
 struct OiioFormat {
   int width, height, channels;  // channels: 1 to 4
   bool floats;                  // 32-bit floats, else bytes
-  bool integers;                // what the file holds, also where it has more than 8 bits and is given as floats in 0..1
+  bool integers;  // what the file holds, also where it has more than 8 bits and is given as floats in 0..1
 };
 
 struct OiioInterface {

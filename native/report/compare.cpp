@@ -83,7 +83,8 @@ RgbImage readOtherRgb(const std::filesystem::path& path) try {
   image.rgb.reserve(static_cast<size_t>(from.width) * static_cast<size_t>(from.height) * 3);
   for (int y = from.height - 1; y >= 0; --y)
     for (int x = 0; x < from.width; ++x) {
-      const Rgb texel = texelRgb(from, static_cast<size_t>(y) * static_cast<size_t>(from.width) + static_cast<size_t>(x));
+      const Rgb texel =
+          texelRgb(from, static_cast<size_t>(y) * static_cast<size_t>(from.width) + static_cast<size_t>(x));
       for (const float v : {texel.x, texel.y, texel.z})
         image.rgb.push_back(file.integers && !from.floats.empty() ? srgbToLinear(v) : v);
     }
@@ -108,15 +109,18 @@ RgbImage readRgb(const std::filesystem::path& path, const std::string& layer) {
     if (!std::isfinite(image.rgb[i]) && bad++ == 0) first = i / 3;
   const auto width = static_cast<size_t>(image.width);
   if (bad > 0)
-    throw Error(ExitCode::kFile, fmt::format("{}: {} values are not finite, the first at pixel ({}, {})", path.string(),
-                                             bad, first % width, first / width),
+    throw Error(ExitCode::kFile,
+                fmt::format("{}: {} values are not finite, the first at pixel ({}, {})", path.string(), bad,
+                            first % width, first / width),
                 "errors of such an image mean nothing");
   return image;
 }
 
 ImageError compareImages(const RgbImage& image, const RgbImage& reference) {
   if (image.width != reference.width || image.height != reference.height)
-    throw Error(ExitCode::kUsage, fmt::format("the images differ in size: {} x {} and {} x {}", image.width, image.height, reference.width, reference.height),
+    throw Error(ExitCode::kUsage,
+                fmt::format("the images differ in size: {} x {} and {} x {}", image.width, image.height,
+                            reference.width, reference.height),
                 "compare renders of the same resolution and border");
   const size_t pixels = image.rgb.size() / 3;
   ImageError e;
@@ -136,7 +140,8 @@ ImageError compareImages(const RgbImage& image, const RgbImage& reference) {
   e.mse /= n, e.relMse /= n, e.mape /= n;
   std::vector<float> sorted = e.relMsePixels;
   const size_t keep = pixels - pixels / 1000;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(keep == pixels ? pixels - 1 : keep), sorted.end());
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(keep == pixels ? pixels - 1 : keep),
+                   sorted.end());
   double kept = 0;
   for (size_t i = 0; i < keep; ++i) kept += double(sorted[i]);
   e.relMseTrimmed = kept / static_cast<double>(std::max<size_t>(1, keep));
@@ -150,7 +155,8 @@ std::string writeDifference(const std::filesystem::path& path, const RgbImage& i
   for (size_t i = 0; i < error.size(); ++i) {
     double sum = 0;
     for (size_t c = 3 * i; c < 3 * i + 3; ++c)
-      sum += std::abs(double(image.rgb[c]) - double(reference.rgb[c])) / (std::abs(double(reference.rgb[c])) + kMapeEpsilon);
+      sum += std::abs(double(image.rgb[c]) - double(reference.rgb[c])) /
+             (std::abs(double(reference.rgb[c])) + kMapeEpsilon);
     error[i] = static_cast<float>(sum / 3);
   }
   if (path.extension() == ".exr") {

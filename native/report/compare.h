@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The error of an image against a reference. x: a channel of the image, r: of the reference; means over pixels and channels.
+// The error of an image against a reference. x: a channel of the image, r: of the reference; means over pixels and
+// channels.
 #pragma once
 
 #include <filesystem>
@@ -21,19 +22,19 @@ struct RgbImage {
 RgbImage readRgb(const std::filesystem::path& path, const std::string& layer = {});
 
 struct ImageError {
-  double mse = 0;            // mean (x - r)^2
-  double relMse = 0;         // mean (x - r)^2 / (r^2 + 0.01)
-  double relMseTrimmed = 0;  // the same without the pixels of the largest 0.1 %
-  double mape = 0;           // mean |x - r| / (|r| + 0.01)
+  double mse = 0;                   // mean (x - r)^2
+  double relMse = 0;                // mean (x - r)^2 / (r^2 + 0.01)
+  double relMseTrimmed = 0;         // the same without the pixels of the largest 0.1 %
+  double mape = 0;                  // mean |x - r| / (|r| + 0.01)
   std::vector<float> relMsePixels;  // per pixel, mean over channels
 };
 
 // Throws Error(kUsage) if the sizes differ.
 ImageError compareImages(const RgbImage& image, const RgbImage& reference);
 
-// The error as a picture: per-pixel relative error |x - r| / (|r| + 0.01) (mean over channels). EXR, by the name: the values
-// as they are. Any other format that OpenImageIO writes: from 0 (black) to `scale` (pale yellow) through a map of even
-// lightness, with a bar beneath that says what the colours mean. Returns what is to be noted, if anything.
+// The error as a picture: per-pixel relative error |x - r| / (|r| + 0.01) (mean over channels). EXR, by the name: the
+// values as they are. Any other format that OpenImageIO writes: from 0 (black) to `scale` (pale yellow) through a map
+// of even lightness, with a bar beneath that says what the colours mean. Returns what is to be noted, if anything.
 std::string writeDifference(const std::filesystem::path& path, const RgbImage& image, const RgbImage& reference,
                             double scale);
 

@@ -10,8 +10,8 @@
 
 namespace wardmis {
 
-// The pixels as the file has them, rows from the bottom. 8-bit files stay 8-bit; 16-bit files become floats in 0..1 that
-// are still encoded as the file had them: `integers`.
+// The pixels as the file has them, rows from the bottom. 8-bit files stay 8-bit; 16-bit files become floats in 0..1
+// that are still encoded as the file had them: `integers`.
 struct FileImage {
   Image image;
   bool integers = false;

@@ -62,11 +62,15 @@ class Images(unittest.TestCase):
         self.assertEqual((data.pixels.dtype, data.pixels.shape[:2], data.color_space), (np.uint8, (1, 2), "sRGB"))
         self.assertEqual(data.pixels[0, 0, :3].tolist(), [51, 102, 153])
 
-        image, _ = self.file("HDR", is_float=True)
+        path = os.path.join(self.folder.name, "sky.hdr")
+        with open(path, "wb") as file:  # 2 x 1: (1, 2, 3) and (1/4, 1/2, 3/4)
+            file.write(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\x40\x80\xc0\x82\x40\x80\xc0\x80")
+        image = bpy.data.images.load(path)
+        self.addCleanup(lambda: bpy.data.images.remove(image))
         data = export_image(image)
         self.assertIsNone(data.encoded)
-        self.assertEqual((data.pixels.dtype, data.pixels.shape[:2], data.color_space), (np.float32, (1, 2), "linear"))
-        np.testing.assert_allclose(data.pixels[0, 0, :3], (0.2, 0.4, 0.6), rtol=0.02)  # 8 bits below the largest
+        self.assertEqual((data.pixels.dtype, data.color_space), (np.float32, "linear"))
+        np.testing.assert_allclose(data.pixels[0, :, :3], [(1, 2, 3), (0.25, 0.5, 0.75)], rtol=0.01)
 
     def test_generated_images_become_pixels(self):
         data = export_image(self.generated(is_float=False))

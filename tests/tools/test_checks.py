@@ -27,6 +27,11 @@ class Layers(unittest.TestCase):
         self.assertEqual(self.includes("native/scene/accel.cpp", "#include <embree3/rtcore.h>"), [])
         self.assertEqual(len(self.includes("native/integrate/hit.cpp", "#include <embree3/rtcore.h>")), 1)
 
+    def test_openimageio_is_known_in_its_module_alone(self):
+        text = '#include <OpenImageIO/imageio.h>\n#include "image/oiio_interface.h"\n'
+        self.assertEqual(self.includes("native/oiio/module.cpp", text), [])
+        self.assertEqual(len(self.includes("native/scene/image_file.cpp", text)), 1)
+
     def test_unknown_folders_are_named(self):
         self.assertIn("'misc' is on no floor", self.includes("native/misc/a.h", "")[0])
 

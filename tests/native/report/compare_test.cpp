@@ -79,8 +79,16 @@ TEST_F(Compare, SizesAndValuesAreChecked) {
 
 TEST_F(Compare, LayersOfAnExr) {
   writeExr(file("layers.exr"),
-           {1, 1, {{"A.Combined.R", {1}}, {"A.Combined.G", {2}}, {"A.Combined.B", {3}}, {"B.Combined.R", {4}},
-                   {"B.Combined.G", {5}}, {"B.Combined.B", {6}}}, {}}, false);
+           {1,
+            1,
+            {{"A.Combined.R", {1}},
+             {"A.Combined.G", {2}},
+             {"A.Combined.B", {3}},
+             {"B.Combined.R", {4}},
+             {"B.Combined.G", {5}},
+             {"B.Combined.B", {6}}},
+            {}},
+           false);
   EXPECT_EQ(readRgb(file("layers.exr")).rgb, (std::vector<float>{1, 2, 3}));
   EXPECT_EQ(readRgb(file("layers.exr"), "B").rgb, (std::vector<float>{4, 5, 6}));
   EXPECT_NE(messageOf([&] { readRgb(file("layers.exr"), "C"); }).find("no C.Combined.R, G, B"), std::string::npos);
@@ -151,8 +159,8 @@ TEST_F(Compare, DifferenceAsPictureHasKnownColours) {
     expectColour(125, y, highest);
     expectColour(199, y, highest);
   }
-  expectColour(100, 104, lowest);   // the gap
-  expectColour(0, 116, lowest);     // the bar
+  expectColour(100, 104, lowest);  // the gap
+  expectColour(0, 116, lowest);    // the bar
   expectColour(100, 116, middle);
   expectColour(199, 116, highest);
   // Figures: white at the left, black at the right, unless the machine has no font, which is said.
