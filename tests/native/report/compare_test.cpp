@@ -61,8 +61,8 @@ TEST_F(Compare, KnownErrors) {
 TEST_F(Compare, TrimmedIsWithoutTheWorstThousandth) {
   const RgbImage reference = grey(100, 20, 1);  // 2000 pixels: two are left out
   RgbImage image = grey(100, 20, 1.1f);
-  for (const int firefly : {700, 1500})
-    for (int c = 0; c < 3; ++c) image.rgb[size_t(3 * firefly + c)] = 1000;
+  for (const size_t firefly : {700, 1500})
+    for (size_t c = 0; c < 3; ++c) image.rgb[3 * firefly + c] = 1000;
   const ImageError e = compareImages(image, reference);
   EXPECT_NEAR(e.relMseTrimmed, 0.01 / 1.01, 1e-6);
   EXPECT_NEAR(e.relMse, (1998 * 0.01 + 2 * 999.0 * 999.0) / 1.01 / 2000, 1e-2);
