@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "integrate/render.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -164,8 +167,13 @@ void checkWritable(const std::string& path) {
   if (!std::filesystem::is_directory(folder))
     throw Error(ExitCode::kFile, fmt::format("{}: its folder does not exist", path), "make the folder, or choose another one");
   if (std::filesystem::is_directory(path)) throw Error(ExitCode::kFile, fmt::format("{}: is a folder", path), "name a file in it");
-  if (access(folder.c_str(), W_OK) != 0)
-    throw Error(ExitCode::kFile, fmt::format("{}: its folder is not writable", path), "check its permissions, or choose another one");
+  // By doing it: access() grants root what some file systems then refuse.
+  const std::string probe = (folder / fmt::format(".wardmis-{}", getpid())).string();
+  const int fd = open(probe.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+  if (fd < 0)
+    throw Error(ExitCode::kFile, fmt::format("{}: its folder is not writable: {}", path, std::strerror(errno)), "check its permissions, or choose another one");
+  close(fd);
+  unlink(probe.c_str());
 }
 
 void writeText(const std::string& path, const std::string& text) {
@@ -219,6 +227,7 @@ int run(Options& o) {
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is an error of write(), as a full disk is
   if (o.watchStdin)
     std::thread([] {
       char c;

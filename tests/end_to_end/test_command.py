@@ -1,0 +1,433 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The contract of the command, docs/command.md: exit codes, messages, files, progress, statistics."""
+
+import json
+import os
+import resource
+import shutil
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import exr
+import numpy as np
+import OpenImageIO as oiio
+from command import BINARY, CommandTest, combined, same
+
+PASSES = {
+    "Combined": "RGBA",
+    "Depth": "Z",
+    "Normal": "XYZ",
+    "Albedo": "RGB",
+    "Variance": "RGB",
+    "Allocation Lobe": "X",
+    "Allocation Cosine": "X",
+    "Allocation Light": "X",
+}
+
+
+def write_exr(path, pixels):
+    height, width, channels = pixels.shape
+    spec = oiio.ImageSpec(width, height, channels, oiio.FLOAT)
+    file = oiio.ImageOutput.create(str(path))
+    file.open(str(path), spec)
+    file.write_image(np.ascontiguousarray(pixels, np.float32))
+    file.close()
+
+
+def channels(path):
+    file = oiio.ImageInput.open(str(path))
+    spec = file.spec()
+    file.close()
+    return spec
+
+
+class Usage(CommandTest):
+    def test_help_and_version(self):
+        self.assertIn("render", self.run_command("--help").stdout)
+        for verb in ("render", "info", "compare"):
+            self.assertIn(verb, self.run_command(verb, "--help").stdout)
+        self.assertRegex(self.run_command("--version").stdout, r"\Awardmis \d+\.\d+\.\d+ ")
+
+    def test_mistakes_end_with_2(self):
+        render = "render", self.scene(), "-o", self.out
+        for arguments, says in (
+            ((), "--help"),
+            (("paint",), "--help"),
+            (("render",), "SCENE"),
+            (("render", self.scene()), "--output"),
+            ((*render, "--sppp", "4"), "--sppp"),
+            ((*render, "--spp", "0"), "--spp"),
+            ((*render, "--spp", "many"), "many"),
+            ((*render, "--spp", "4", "--time", "1"), "--time"),
+            ((*render, "--allocation", "fair"), "second-moment"),
+            ((*render, "--sampler", "halton"), "sobol"),
+            ((*render, "--samples-per-hit", "257"), "256"),
+            ((*render, "--min-fraction", "0.9"), "--min-fraction"),
+            ((*render, "--threads", "-1"), "--threads"),
+            ((*render, "--resolution", "48"), "WIDTHxHEIGHT"),
+            ((*render, "--resolution", "0x10"), "WIDTHxHEIGHT"),
+            ((*render, "--passes", "combined,beauty"), "beauty"),
+        ):
+            with self.subTest(arguments=arguments):
+                self.refused(2, *arguments, says=[says])
+        self.assertFalse(self.out.exists())
+
+
+class Files(CommandTest):
+    def test_scene_that_is_missing(self):
+        self.refused(4, "render", self.folder / "none.glb", "-o", self.out, says=["none.glb"])
+        self.refused(4, "info", self.folder / "none.glb", says=["none.glb"])
+
+    def test_scene_that_cannot_be_read(self):
+        whole = self.scene().read_bytes()
+        bad = self.folder / "bad.glb"
+        for content in (b"", b"glTF", whole[:-1], whole[: len(whole) // 2], b"solid" + whole[5:], b"{}"):
+            bad.write_bytes(content)
+            for verb in (("render", bad, "-o", self.out), ("info", bad)):
+                self.refused(3, *verb, says=["bad.glb"])
+        self.refused(4, "render", self.folder, "-o", self.out)
+        self.assertFalse(self.out.exists())
+
+    def test_output_that_cannot_be_written(self):
+        for out in (self.folder / "none" / "out.exr", self.folder, Path("/proc/out.exr")):
+            self.refused(4, "render", self.scene(), "-o", out, says=[str(out)])
+        self.refused(
+            4, "render", self.scene(), "-o", self.out, "--stats", self.folder / "none" / "s.json", says=["s.json"]
+        )
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_disk_that_is_full(self):
+        """A limit on the size of files stands for it. What was there stays, and nothing is left over."""
+        self.out.write_bytes(b"old")
+        for limit in (0, 4096):
+            self.refused(
+                4, "render", self.scene(), "-o", self.out, "--spp", "1", "--resolution", "64x64", says=["out.exr", "free space"],
+                preexec_fn=lambda limit=limit: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)),
+            )  # fmt: skip
+        self.assertEqual([p.name for p in self.folder.iterdir()], ["out.exr"])
+        self.assertEqual(self.out.read_bytes(), b"old")
+
+    def test_paths_of_every_kind(self):
+        place = self.folder / "Bilder für '東京' $HOME %04d"
+        place.mkdir()
+        scene, out = place / "eine Szene.glb", place / "ein Bild.exr"
+        shutil.copy(self.scene(), scene)
+        more = "--stats", place / "Größe.json", "--preview", place / "Vorschau.exr", "--preview-interval", "0"
+        self.render("--spp", "2", "--layer", "Ebene 1.ä", *more, scene=scene, out=out)
+        names = ["Größe.json", "Vorschau.exr", "ein Bild.exr", "eine Szene.glb"]
+        self.assertEqual(sorted(p.name for p in place.iterdir()), names)
+        self.assertIn("Ebene 1.ä.Combined.R", channels(out).channelnames)
+        self.assertEqual(json.loads(more[1].read_text())["scene"], str(scene))
+        # of the current folder, with a dash in front
+        (place / "-o.glb").write_bytes(scene.read_bytes())
+        self.render("--spp", "1", scene="./-o.glb", out="-x.exr", cwd=place)
+        self.assertTrue((place / "-x.exr").exists())
+
+
+class Image(CommandTest):
+    def test_passes_and_attributes(self):
+        stats = self.folder / "stats.json"
+        self.render("--spp", "8", "--layer", "Front", "--stats", stats)
+        spec = channels(self.out)
+        self.assertEqual((spec.width, spec.height, spec.nchannels), (48, 32, sum(map(len, PASSES.values()))))
+        expected = {f"Front.{name}.{c}" for name, letters in PASSES.items() for c in letters}
+        self.assertEqual(set(spec.channelnames), expected)
+        self.assertEqual(str(spec.format), "float")
+        image = exr.read(self.out)
+        for name, pixels in image.passes.items():
+            self.assertTrue(np.isfinite(pixels).all(), name)
+        hit = image.passes["Depth"][..., 0] < 1e10
+        self.assertGreater(hit.mean(), 0.3)
+        shares = sum(image.passes[f"Allocation {t}"][..., 0] for t in ("Lobe", "Cosine", "Light"))
+        np.testing.assert_allclose(shares[hit], 1, atol=1e-5)
+        self.assertTrue((np.linalg.norm(image.passes["Normal"], axis=2) < 1 + 1e-5).all())
+        self.assertTrue((image.passes["Variance"] >= 0).all())
+        attributes = {k: v for k, v in image.attributes.items() if k.startswith("wardmis:")}
+        wanted = ["version", "settings", "seconds", "samples", "rays", "left_out", "notes"]
+        self.assertLessEqual({f"wardmis:{key}" for key in wanted}, set(attributes))
+        self.assertEqual(json.loads(attributes["wardmis:settings"]), json.loads(stats.read_text())["settings"])
+
+    def test_subset_of_passes(self):
+        self.render("--spp", "2")
+        whole = exr.read(self.out).passes
+        self.render("--spp", "2", "--passes", "depth,combined", out=self.folder / "some.exr")
+        some = exr.read(self.folder / "some.exr").passes
+        self.assertEqual(set(some), {"Combined", "Depth"})
+        for name, pixels in some.items():
+            np.testing.assert_array_equal(pixels, whole[name])
+
+    def test_resolution(self):
+        self.render("--spp", "1", "--resolution", "33x70")
+        self.assertEqual(combined(self.out).shape, (70, 33, 4))
+
+    def test_statistics(self):
+        file = self.folder / "stats.json"
+        self.render("--spp", "8", "--threads", "2", "--seed", "7", "--stats", file)
+        stats = json.loads(file.read_text())
+        for key, parts in {
+            "seconds": "read build pilot render write total",
+            "cpu_seconds": "pilot render",
+            "samples": "lobe cosine light total",
+            "rays": "camera lobe cosine shadow total",
+            "counts": "nan infinite negative",
+            "scene_counts": "triangles instances materials lights emissive_triangles",
+        }.items():
+            self.assertEqual(set(stats[key]), set(parts.split()), key)
+            self.assertTrue(all(value >= 0 for value in stats[key].values()), key)
+        for key in ("samples", "rays"):
+            self.assertEqual(sum(stats[key].values()), 2 * stats[key]["total"], key)
+        times = stats["seconds"]
+        self.assertLessEqual(sum(v for k, v in times.items() if k != "total"), times["total"] * 1.01)
+        self.assertGreater(times["pilot"], 0)
+        self.assertEqual(stats["pixels"], 48 * 32)
+        self.assertEqual(stats["camera_paths"], 48 * 32 * 8)
+        self.assertEqual((stats["samples_per_pixel"], stats["threads"], stats["scene"]), (8, 2, str(self.scene())))
+        self.assertEqual((stats["settings"]["seed"], stats["settings"]["allocation"]), (7, "second-moment"))
+        self.assertEqual(stats["counts"], {"nan": 0, "infinite": 0, "negative": 0})
+        for key in ("version", "needs", "isa"):
+            self.assertIsInstance(stats[key], str)
+        for key in ("left_out", "notes"):
+            self.assertIsInstance(stats[key], list)
+        self.assertAlmostEqual(
+            stats["mean_variance"], luminance(exr.read(self.out).passes["Variance"]).mean(), delta=1e-6
+        )
+
+    def test_scene_that_needs_little(self):
+        """No lights but points, no specular, no sky: what is left out is said, and has no pass."""
+        quad = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], np.float32)
+        indices = np.array([0, 1, 2, 0, 2, 3], np.uint32)
+        document = {
+            "asset": {"version": "2.0"},
+            "extensionsUsed": ["KHR_lights_punctual", "WARDMIS_scene"],
+            "extensions": {
+                "KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 5}]},
+                "WARDMIS_scene": {"version": 1, "film": {"resolution": [16, 16]}},
+            },
+            "scenes": [{"nodes": [0, 1, 2]}],
+            "nodes": [
+                {"mesh": 0},
+                {"camera": 0, "translation": [0, 0, 3]},
+                {"translation": [0, 0, 2], "extensions": {"KHR_lights_punctual": {"light": 0}}},
+            ],
+            "cameras": [{"type": "perspective", "perspective": {"yfov": 0.4, "znear": 0.1}}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+            "accessors": [
+                {
+                    "bufferView": 0,
+                    "componentType": 5126,
+                    "count": 4,
+                    "type": "VEC3",
+                    "min": [-1, -1, 0],
+                    "max": [1, 1, 0],
+                },
+                {"bufferView": 1, "componentType": 5125, "count": 6, "type": "SCALAR"},
+            ],
+            "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 24}],
+            "buffers": [{"byteLength": 72, "uri": "quad.bin"}],
+        }
+        (self.folder / "quad.bin").write_bytes(quad.tobytes() + indices.tobytes())
+        scene = self.folder / "quad.gltf"
+        scene.write_text(json.dumps(document))
+        self.run_command("render", scene, "-o", self.out, "--spp", "4", "--stats", self.folder / "s.json")
+        stats = json.loads((self.folder / "s.json").read_text())
+        left_out = " ".join(stats["left_out"])
+        for what in ("environment", "specular", "pilot"):
+            self.assertIn(what, left_out)
+        self.assertEqual(stats["seconds"]["pilot"], 0)
+        self.assertEqual(stats["samples"]["lobe"], 0)
+        self.assertNotIn("Allocation Lobe", exr.read(self.out).passes)
+        # Lambert under a point, straight below it: 0.8/pi * 5/2^2
+        self.assertAlmostEqual(combined(self.out)[7:9, 7:9, 0].mean(), 0.8 / np.pi * 5 / 4, delta=2e-3)
+
+
+class Progress(CommandTest):
+    def test_json_lines(self):
+        done = self.render(
+            "--spp", "16", "--progress", "json", "--preview", self.folder / "p.exr", "--preview-interval", "0"
+        )
+        events = self.events(done.stdout)
+        kinds = [event["event"] for event in events]
+        self.assertEqual((kinds[0], kinds[-1]), ("start", "done"))
+        self.assertEqual((kinds.count("start"), kinds.count("done")), (1, 1))
+        self.assertEqual(done.stderr, "")
+        start, last = events[0], events[-1]
+        self.assertEqual((start["width"], start["height"], start["spp"]), (48, 32, 16))
+        self.assertEqual({p["name"]: p["channels"] for p in start["passes"]}, PASSES)
+        self.assertLessEqual({"version", "left_out", "notes"}, set(start))
+        progress = [event for event in events if event["event"] == "progress"]
+        self.assertEqual({event["phase"] for event in progress}, {"pilot", "render"})
+        for key in ("samples", "fraction", "seconds"):
+            values = [event[key] for event in progress]
+            self.assertEqual(values, sorted(values), key)
+        self.assertTrue(
+            all(event["of"] == 16 and 0 <= event["fraction"] <= 1 and event["left"] >= 0 for event in progress)
+        )
+        previews = [event for event in events if event["event"] == "preview"]
+        self.assertTrue(previews)
+        self.assertEqual(previews[0]["path"], str(self.folder / "p.exr"))
+        self.assertEqual(set(exr.read(self.folder / "p.exr").passes), {"Combined"})
+        self.assertEqual((last["path"], last["samples"]), (str(self.out), 16))
+        self.assertEqual(last["stats"]["samples_per_pixel"], 16)
+
+    def test_error_is_an_event_too(self):
+        done = self.refused(4, "render", self.folder / "none.glb", "-o", self.out, "--progress", "json")
+        (event,) = self.events(done.stdout)
+        self.assertEqual((event["event"], event["code"]), ("error", 4))
+        self.assertIn(event["message"], done.stderr)
+
+    def test_time(self):
+        began = time.monotonic()
+        done = self.render("--time", "1.5", "--progress", "json")
+        self.assertLess(time.monotonic() - began, 1.5 + 3)
+        events = self.events(done.stdout)
+        self.assertIsNone(events[0]["spp"])
+        self.assertTrue(all(event["of"] is None for event in events if event["event"] == "progress"))
+        seconds = events[-1]["stats"]["seconds"]
+        self.assertTrue(1.2 < seconds["pilot"] + seconds["render"] < 2.5, seconds)
+        self.assertGreater(events[-1]["samples"], 0)
+        self.assertTrue(self.out.exists())
+
+    def test_bar(self):
+        done = self.render("--spp", "4", "--progress", "bar")
+        self.assertRegex(done.stderr, r"\[#*\.*\] +\d+ %")
+        self.assertIn(str(self.out), done.stdout)
+
+
+class Stopping(CommandTest):
+    def end(self, process, within=10):
+        process.stdout.read()
+        return process.wait(within)
+
+    def left(self):
+        return [p.name for p in self.folder.iterdir()]
+
+    def test_interrupt_keeps_the_image_so_far(self):
+        process = self.started()
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(self.end(process), 130)
+        self.assertIn("out.partial.exr", process.stderr.read())
+        self.assertEqual(self.left(), ["out.partial.exr"])
+        image = exr.read(self.folder / "out.partial.exr")
+        self.assertEqual(set(image.passes), set(PASSES))
+        self.assertGreater(combined(self.folder / "out.partial.exr").mean(), 0.1)
+
+    def test_termination_writes_nothing(self):
+        process = self.started()
+        began = time.monotonic()
+        process.terminate()
+        self.assertEqual(self.end(process), 130)
+        self.assertLess(time.monotonic() - began, 3)
+        self.assertEqual(self.left(), [])
+
+    def test_closed_input_writes_nothing(self):
+        process = self.started("--watch-stdin")
+        process.stdin.close()
+        self.assertEqual(self.end(process), 130)
+        self.assertEqual(self.left(), [])
+
+    def test_input_is_left_alone_otherwise(self):
+        process = self.started()
+        process.stdin.close()
+        with self.assertRaises(subprocess.TimeoutExpired):
+            process.wait(1)
+
+    def test_listener_that_has_gone(self):
+        """A render goes on when nobody reads its progress."""
+        read, write = os.pipe()
+        os.close(read)
+        command = [
+            BINARY,
+            "render",
+            self.scene(),
+            "-o",
+            self.out,
+            "--spp",
+            "8",
+            "--resolution",
+            "48x32",
+            "--progress",
+            "json",
+        ]
+        try:
+            done = subprocess.run(command, stdout=write, stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, timeout=60)
+        finally:
+            os.close(write)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue(self.out.exists())
+
+
+class Info(CommandTest):
+    def test_json(self):
+        info = json.loads(self.run_command("info", self.scene(), "--json").stdout)
+        self.assertEqual((info["scene"], info["resolution"], info["camera"]), (str(self.scene()), [768, 512], "Camera"))
+        self.assertGreater(info["scene_counts"]["triangles"], 10000)
+        self.assertEqual(info["scene_counts"]["materials"], 2)
+        self.assertIsInstance(info["needs"], str)
+        self.assertIsInstance(info["left_out"], list)
+
+    def test_text(self):
+        said = self.run_command("info", self.scene()).stdout
+        for word in ("768 x 512", "triangles", "environment image", "left out"):
+            self.assertIn(word, said)
+
+
+class Compare(CommandTest):
+    def setUp(self):
+        super().setUp()
+        self.pixels = np.random.default_rng(1).random((8, 12, 3)).astype(np.float32)
+        self.reference = self.folder / "reference.exr"
+        write_exr(self.reference, self.pixels)
+
+    def changed(self, pixels):
+        path = self.folder / "image.exr"
+        write_exr(path, pixels)
+        return path
+
+    def test_identical(self):
+        found = json.loads(self.run_command("compare", self.reference, self.reference, "--json").stdout)
+        for key in ("mse", "relmse", "relmse_without_top_0.1_percent", "mape"):
+            self.assertEqual(found[key], 0, key)
+        self.run_command("compare", self.reference, self.reference, "--max-relmse", "0")
+
+    def test_known_errors(self):
+        image = self.changed(self.pixels + np.float32(0.1))
+        found = json.loads(self.run_command("compare", image, self.reference, "--json").stdout)
+        r, x = self.pixels.astype(float), (self.pixels + np.float32(0.1)).astype(float)
+        self.assertAlmostEqual(found["mse"], np.mean((x - r) ** 2), places=7)
+        self.assertAlmostEqual(found["relmse"] / np.mean((x - r) ** 2 / (r**2 + found["relmse_epsilon"])), 1, places=5)
+        self.assertAlmostEqual(found["mape"] / np.mean(abs(x - r) / (abs(r) + found["mape_epsilon"])), 1, places=5)
+        self.run_command("compare", image, self.reference, "--max-relmse", "1e-6", code=1)
+        for name in ("d.png", "d.exr"):
+            self.run_command("compare", image, self.reference, "--difference", self.folder / name)
+            self.assertIsNotNone(oiio.ImageInput.open(str(self.folder / name)))
+
+    def test_other_sizes(self):
+        image = self.changed(self.pixels[:, :-1])
+        self.refused(2, "compare", image, self.reference, says=["11 x 8", "12 x 8"])
+
+    def test_nan_is_named(self):
+        self.pixels[3, 5, 1] = np.nan
+        image = self.changed(self.pixels)
+        self.refused(4, "compare", image, self.reference, says=["image.exr", "not finite", "(5, 3)"])
+        self.refused(4, "compare", self.reference, image, says=["image.exr"])
+
+    def test_image_that_is_none(self):
+        self.refused(4, "compare", self.folder / "none.exr", self.reference, says=["none.exr"])
+        bad = self.folder / "bad.exr"
+        bad.write_bytes(self.reference.read_bytes()[:200])
+        self.refused(4, "compare", bad, self.reference, says=["bad.exr"])
+
+    def test_own_images(self):
+        """A layer is found by itself, or named."""
+        self.render("--spp", "4")
+        self.render("--spp", "4", "--layer", "Other", out=self.folder / "other.exr")
+        self.assertFalse(same(self.out, self.reference))
+        found = json.loads(self.run_command("compare", self.out, self.folder / "other.exr", "--json").stdout)
+        self.assertEqual((found["mse"], found["width"], found["height"]), (0, 48, 32))
+        self.refused(4, "compare", self.out, self.out, "--layer", "Missing", says=["Missing"])
+
+
+def luminance(rgb):
+    return rgb @ np.array([0.2126, 0.7152, 0.0722], np.float32)
