@@ -21,11 +21,8 @@ std::vector<Fractions> Pilot::fractions(AllocationRule rule, Integrand integrand
           m.diffuse += q.moments.diffuse;
         }
       Fractions& a = result[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)];
-      if (integrand == Integrand::kJoint)
-        a = allocate(rule, m.specular, available, minimum);
-      else
-        a = combineSplit(allocate(rule, m.specular, available & kSpecularTechniques, minimum),
-                         allocate(rule, m.diffuse, available & kDiffuseTechniques, minimum));
+      const TechniqueMask mask = available & center.techniques;
+      a = integrand == Integrand::kJoint ? allocate(rule, m.specular, mask, minimum) : allocateSplit(rule, m.specular, m.diffuse, mask, minimum);
     }
   });
   return result;

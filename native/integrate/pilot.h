@@ -12,6 +12,7 @@ struct PilotPixel {
   Vec3f normal{0, 0, 0};
   int material = -1;
   uint32_t placement = ~0u;
+  TechniqueMask techniques = kAllTechniques;  // that this surface has
 };
 
 struct Pilot {

@@ -170,8 +170,7 @@ FilmBuffer renderInArena(const Scene& scene, const RenderSettings& settings, Sta
                     settings.samplesPerHit, settings.integrator == Integrator::kPath ? settings.maxDepth : 1, emitters.any(), surfaceRays, film.x0, film.y0};
   // Before the pilot, and for `equal`: the same count for every technique of an integral.
   const TechniqueMask available = stats.techniques;
-  const auto equal = [&](TechniqueMask m) { return allocate(AllocationRule::kEqual, {}, static_cast<TechniqueMask>(m & available), 0); };
-  input.fractions = joint ? equal(kAllTechniques) : combineSplit(equal(kSpecularTechniques), equal(kDiffuseTechniques));
+  input.fractions = joint ? allocate(AllocationRule::kEqual, {}, available, 0) : allocateSplit(AllocationRule::kEqual, {}, {}, available, 0);
 
   Run run(settings, observer, buffer, input, tileKernel(stats.kernel));
   if (observer.started) observer.started(stats);

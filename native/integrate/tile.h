@@ -30,16 +30,18 @@ Rgb cameraSample(const KernelInput& in, const Ray& ray, uint32_t pixelKey, uint3
   if (sample == 0) pixel.depth = in.camera.depth(ray, hit.t);
   pixel.normal += x.frame.z;
   pixel.albedo += s.diffuse + s.specular;
+  const TechniqueMask mask = techniquesAt(s, in.lights, in.surfaceRays);
   if (pilot != nullptr && pilot->material < 0) {
     pilot->material = x.material;
     pilot->placement = x.placement;
     pilot->normal = x.frame.z;
+    pilot->techniques = mask;
   }
 
-  const TechniqueMask mask = techniquesAt(s, in.lights, in.surfaceRays);
   if (mask == 0 || !(s.hasDiffuse() || s.hasSpecular())) return sum;
   HitPlan plan;
-  plan.fractions = restrict(in.rule == AllocationRule::kAlbedo ? albedoFractions(s) : pixelFractions != nullptr ? *pixelFractions : in.fractions, mask);
+  const Fractions& shares = pixelFractions != nullptr && covers(*pixelFractions, mask) ? *pixelFractions : in.fractions;
+  plan.fractions = restrict(in.rule == AllocationRule::kAlbedo ? albedoFractions(s) : shares, mask);
   plan.samples = in.samplesPerHit;
   plan.integrand = in.integrand;
   plan.weights = in.weights;

@@ -49,12 +49,18 @@ Fractions allocate(AllocationRule rule, const Moments& m, TechniqueMask used, fl
 }
 
 Fractions combineSplit(const Fractions& specular, const Fractions& diffuse) {
-  const double s = specular[kLight], d = diffuse[kLight];
-  // lobe/light and cosine/light over a common denominator; without light samples half for each integrand that exists
-  const bool shared = s > 0 && d > 0;
-  const double lobe = specular[kLobe] * (shared ? d : 1), cosine = diffuse[kCosine] * (shared ? s : 1), light = shared ? s * d : s + d;
-  const double sum = lobe + cosine + light, inv = sum > 0 ? 1 / sum : 0;
-  return {static_cast<float>(lobe * inv), static_cast<float>(cosine * inv), static_cast<float>(light * inv)};
+  Fractions a{specular[kLobe], diffuse[kCosine], std::max(specular[kLight], diffuse[kLight])};
+  const float sum = a[kLobe] + a[kCosine] + a[kLight];
+  for (float& x : a) x = sum > 0 ? x / sum : 0;
+  return a;
+}
+
+Fractions allocateSplit(AllocationRule rule, const Moments& specular, const Moments& diffuse, TechniqueMask available, float minimum) {
+  const auto one = [&](const Moments& m, Technique own, TechniqueMask used) {
+    return (available & maskOf(own)) != 0 ? allocate(rule, m, available & used, minimum) : Fractions{};
+  };
+  const Fractions s = one(specular, kLobe, kSpecularTechniques), d = one(diffuse, kCosine, kDiffuseTechniques);
+  return restrict(combineSplit(s, d), available);
 }
 
 Fractions restrict(const Fractions& a, TechniqueMask available) {

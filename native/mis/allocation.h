@@ -37,9 +37,21 @@ constexpr bool needsMoments(AllocationRule rule) {
 // Equal where the moments say nothing (a zero, not finite). Clamped to [minimum, 1 - (n-1) minimum].
 Fractions allocate(AllocationRule rule, const Moments& m, TechniqueMask used, float minimum);
 
-// Fractions of a hit whose integrands share samples. Joint: those of the one integrand. Split: lobe : light as the
-// specular integrand wants, cosine : light as the diffuse one, the light samples shared by both.
+// Fractions of a hit with two integrands, each with the same budget and its own fractions of it: lobe and light for the
+// specular one, cosine and light for the diffuse one. Light samples serve both, so the larger of the two demands is drawn,
+// and what that saves goes to all in proportion. Each integrand has at least the samples that it asked for.
 Fractions combineSplit(const Fractions& specular, const Fractions& diffuse);
+
+// The fractions of split integrands, of the techniques `available`; an integrand without its own technique asks for nothing.
+Fractions allocateSplit(AllocationRule rule, const Moments& specular, const Moments& diffuse, TechniqueMask available, float minimum);
+
+// Whether every technique of `available` gets samples. A hit that has more techniques than its pixel's fractions know of (at
+// an edge) must not use them: light that only the missing one finds would be lost.
+constexpr bool covers(const Fractions& a, TechniqueMask available) {
+  for (int i = 0; i < kTechniques; ++i)
+    if ((available >> i & 1u) != 0 && !(a[i] > 0)) return false;
+  return true;
+}
 
 // Restricts fractions to the techniques that a hit has, and renormalises.
 Fractions restrict(const Fractions& a, TechniqueMask available);

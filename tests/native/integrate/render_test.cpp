@@ -120,6 +120,41 @@ TEST(Render, EveryAllocationAgrees) {
       }
 }
 
+// Pixels that show a matte and a mirror-like plate: fractions learnt on one must not starve the other's lobe, the only
+// technique that finds a reflection's reflection. Compared over the edge's pixels, |z| < 4.
+TEST(Render, EdgesAreNotStarved) {
+  Scene scene;
+  scene.materials = {ward({0.5f, 0.5f, 0.5f}, {0, 0, 0}, 0.1f, WardVariant::kWard), ward({0, 0, 0}, {0.9f, 0.9f, 0.9f}, 0.05f, WardVariant::kWardGmd)};
+  // stripes narrower than a pixel
+  for (int i = 0; i < 32; ++i) {
+    const float x = -1 + static_cast<float>(i) / 16;
+    addMesh(scene, {{x, -1, 0}, {x + 0.0625f, -1, 0}, {x + 0.0625f, 1, 0}, {x, 1, 0}}, {0, 1, 2, 0, 2, 3}, i % 2);
+  }
+  addPlane(scene, 4, 0, 3);  // what the mirror shows, lit from below
+  Light lamp;
+  lamp.type = LightType::kArea;
+  lamp.emitted = {5, 5, 5};
+  lamp.toWorld = {{1, 0, 0}, {0, -1, 0}, {0, 0, -1}, {0, 0, 0.5f}};  // looks up
+  lamp.visibility = kSeenByAll & ~kSeenByCamera;
+  scene.lights = {lamp};
+  lookFrom(scene, 0.5f, 0.8f, 8);
+  scene.camera->toWorld.t = scene.camera->toWorld.z * 2;
+  RenderSettings s = quick();
+  s.sampler = SamplerType::kIndependent;
+  s.spp = 512;
+  s.allocation = AllocationRule::kAlbedo;
+  const FilmBuffer reference = renderScene(scene, s);
+  s.allocation = AllocationRule::kSecondMoment;
+  s.seed = 1;
+  const FilmBuffer film = renderScene(scene, s);
+  double difference = 0, variance = 0;
+  for (size_t i = 0; i < film.pixels.size(); ++i) {
+    difference += double(luminance(film.mean(film.pixels[i])) - luminance(reference.mean(reference.pixels[i])));
+    variance += double(luminance(film.variance(film.pixels[i])) + luminance(reference.variance(reference.pixels[i])));
+  }
+  EXPECT_LT(std::abs(difference) / std::sqrt(variance), 4) << difference;
+}
+
 TEST(Render, CountsWhatItSpends) {
   RenderSettings s = quick();
   s.integrator = Integrator::kDirect;
