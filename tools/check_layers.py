@@ -14,7 +14,7 @@ LIBRARIES = {"embree": ["native/scene/accel"], "CLI": ["native/cli/"], "OpenImag
 
 # Python: Blender's modules, and where they may be imported.
 BLENDER = {"bpy", "bpy_extras", "mathutils", "gpu", "bl_ui", "nodeitems_utils"}
-WITH_BLENDER = ("addon/", "tests/addon/", "blend/")
+WITH_BLENDER = ("addon/", "tests/addon/", "tests/end_to_end/cycles_scenes.py", "blend/")
 # These parts of the add-on are plain data: they must work, and be tested, without Blender.
 WITHOUT_BLENDER = ("addon/wardmis/export/model.py", "addon/wardmis/export/glb.py")
 
