@@ -35,9 +35,12 @@ template <class T>
 inline WardValue<T> evaluateWard(const Surface& s, Vec3<T> wi, Vec3<T> wo) {
   const T invAx = T(1) / T(s.ax), invAy = T(1) / T(s.ay);
   switch (s.variant) {
-    case WardVariant::kWard: return wardEvaluate<WardVariant::kWard>(wi, wo, invAx, invAy);
-    case WardVariant::kWardDur: return wardEvaluate<WardVariant::kWardDur>(wi, wo, invAx, invAy);
-    default: return wardEvaluate<WardVariant::kWardGmd>(wi, wo, invAx, invAy);
+    case WardVariant::kWard:
+      return wardEvaluate<WardVariant::kWard>(wi, wo, invAx, invAy);
+    case WardVariant::kWardDur:
+      return wardEvaluate<WardVariant::kWardDur>(wi, wo, invAx, invAy);
+    default:
+      return wardEvaluate<WardVariant::kWardGmd>(wi, wo, invAx, invAy);
   }
 }
 
@@ -59,9 +62,12 @@ template <class T, int Capacity>
 inline void evaluate(const Surface& s, Vec3<T> wo, Batch<T, Capacity>& b, int n) {
   const T invAx = T(1) / T(s.ax), invAy = T(1) / T(s.ay);
   switch (s.variant) {
-    case WardVariant::kWard: return evaluateWard<WardVariant::kWard>(b, n, wo, invAx, invAy);
-    case WardVariant::kWardDur: return evaluateWard<WardVariant::kWardDur>(b, n, wo, invAx, invAy);
-    case WardVariant::kWardGmd: return evaluateWard<WardVariant::kWardGmd>(b, n, wo, invAx, invAy);
+    case WardVariant::kWard:
+      return evaluateWard<WardVariant::kWard>(b, n, wo, invAx, invAy);
+    case WardVariant::kWardDur:
+      return evaluateWard<WardVariant::kWardDur>(b, n, wo, invAx, invAy);
+    case WardVariant::kWardGmd:
+      return evaluateWard<WardVariant::kWardGmd>(b, n, wo, invAx, invAy);
   }
 }
 

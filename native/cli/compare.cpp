@@ -18,11 +18,18 @@ Verb addCompare(CLI::App& app) {
     bool json = false;
   };
   auto o = std::make_shared<Options>();
-  app.add_option("IMAGE", o->image, "the image: OpenEXR, PNG, JPEG, or what OpenImageIO reads where the command comes with it; integers are taken as sRGB and become linear")->required();
+  app.add_option("IMAGE", o->image,
+                 "the image: OpenEXR, PNG, JPEG, or what OpenImageIO reads where the command comes with it; integers "
+                 "are taken as sRGB and become linear")
+      ->required();
   app.add_option("REFERENCE", o->reference, "what it is held against")->required();
   app.add_option("--layer", o->layer, "layer of multi-layer files (default: the first with a Combined pass)");
-  app.add_option("--difference", o->difference, "write the relative error |x - r| / (r + 0.01) as an image: the values as .exr, or false colours with their scale as .png, .jpg ... (needs OpenImageIO)");
-  app.add_option("--scale", o->scale, "relative error shown in the brightest colour")->check(CLI::Range(1e-9, 1e9))->capture_default_str();
+  app.add_option("--difference", o->difference,
+                 "write the relative error |x - r| / (r + 0.01) as an image: the values as .exr, or false colours with "
+                 "their scale as .png, .jpg ... (needs OpenImageIO)");
+  app.add_option("--scale", o->scale, "relative error shown in the brightest colour")
+      ->check(CLI::Range(1e-9, 1e9))
+      ->capture_default_str();
   app.add_option("--max-relmse", o->maxRelMse, "exit 1 if relMSE is above this")->check(CLI::Range(0.0, 1e30));
   app.add_flag("--json", o->json, "machine output");
 
@@ -34,9 +41,16 @@ Verb addCompare(CLI::App& app) {
         fmt::print(stderr, "wardmis: warning: {}\n", note);
     const bool pass = o->maxRelMse < 0 || e.relMse <= o->maxRelMse;
     if (o->json) {
-      fmt::print("{}\n", nlohmann::json{{"width", image.width}, {"height", image.height}, {"mse", e.mse}, {"relmse", e.relMse},
-                                        {"relmse_without_top_0.1_percent", e.relMseTrimmed}, {"mape", e.mape},
-                                        {"relmse_epsilon", kRelMseEpsilon}, {"mape_epsilon", kMapeEpsilon}, {"pass", pass}}.dump(2));
+      fmt::print("{}\n", nlohmann::json{{"width", image.width},
+                                        {"height", image.height},
+                                        {"mse", e.mse},
+                                        {"relmse", e.relMse},
+                                        {"relmse_without_top_0.1_percent", e.relMseTrimmed},
+                                        {"mape", e.mape},
+                                        {"relmse_epsilon", kRelMseEpsilon},
+                                        {"mape_epsilon", kMapeEpsilon},
+                                        {"pass", pass}}
+                             .dump(2));
     } else {
       fmt::print("MSE      {:.6g}   mean (x - r)^2\n", e.mse);
       fmt::print("relMSE   {:.6g}   mean (x - r)^2 / (r^2 + {})\n", e.relMse, kRelMseEpsilon);

@@ -18,8 +18,12 @@ Verb addInfo(CLI::App& app) {
   };
   auto o = std::make_shared<Options>();
   app.add_option("SCENE", o->scene, "a .glb or .gltf file")->required();
-  app.add_option("--integrand", o->integrand, "as for render")->check(CLI::IsMember({"split", "joint"}))->capture_default_str();
-  app.add_option("--integrator", o->integrator, "as for render")->check(CLI::IsMember({"direct", "path"}))->capture_default_str();
+  app.add_option("--integrand", o->integrand, "as for render")
+      ->check(CLI::IsMember({"split", "joint"}))
+      ->capture_default_str();
+  app.add_option("--integrator", o->integrator, "as for render")
+      ->check(CLI::IsMember({"direct", "path"}))
+      ->capture_default_str();
   app.add_flag("--json", o->json, "machine output");
 
   return [o] {
@@ -32,31 +36,41 @@ Verb addInfo(CLI::App& app) {
     const std::vector<std::string> left = leftOut(scene, n, emitters);
     const Film& film = scene.film;
     if (o->json) {
-      const nlohmann::json j{
-          {"version", WARDMIS_VERSION},
-          {"scene", o->scene},
-          {"resolution", {film.width, film.height}},
-          {"border", {film.x0, film.y0, film.x1, film.y1}},
-          {"camera", scene.camera ? nlohmann::json(scene.camera->name) : nlohmann::json(nullptr)},
-          {"scene_counts",
-           {{"triangles", geometry.triangles}, {"instances", geometry.placements.size()}, {"meshes", scene.meshes.size()},
-            {"materials", scene.materials.size()}, {"lights", scene.lights.size()}, {"emissive_triangles", emitters.emissiveTriangles()},
-            {"images", scene.images.size()}, {"degenerate_triangles", scene.degenerateTriangles}}},
-          {"needs", describe(n)},
-          {"left_out", left},
-          {"notes", scene.notes}};
+      const nlohmann::json j{{"version", WARDMIS_VERSION},
+                             {"scene", o->scene},
+                             {"resolution", {film.width, film.height}},
+                             {"border", {film.x0, film.y0, film.x1, film.y1}},
+                             {"camera", scene.camera ? nlohmann::json(scene.camera->name) : nlohmann::json(nullptr)},
+                             {"scene_counts",
+                              {{"triangles", geometry.triangles},
+                               {"instances", geometry.placements.size()},
+                               {"meshes", scene.meshes.size()},
+                               {"materials", scene.materials.size()},
+                               {"lights", scene.lights.size()},
+                               {"emissive_triangles", emitters.emissiveTriangles()},
+                               {"images", scene.images.size()},
+                               {"degenerate_triangles", scene.degenerateTriangles}}},
+                             {"needs", describe(n)},
+                             {"left_out", left},
+                             {"notes", scene.notes}};
       fmt::print("{}\n", j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
       return 0;
     }
     fmt::print("{}\n", o->scene);
     fmt::print("  image       {} x {}", film.width, film.height);
-    if (film.x1 - film.x0 != film.width || film.y1 - film.y0 != film.height) fmt::print(", border {} x {}", film.x1 - film.x0, film.y1 - film.y0);
+    if (film.x1 - film.x0 != film.width || film.y1 - film.y0 != film.height)
+      fmt::print(", border {} x {}", film.x1 - film.x0, film.y1 - film.y0);
     fmt::print("\n  camera      {}\n", scene.camera ? scene.camera->name : "none: the scene cannot be rendered");
-    fmt::print("  geometry    {} triangles in {} objects of {} meshes\n", geometry.triangles, geometry.placements.size(), scene.meshes.size());
-    if (scene.degenerateTriangles > 0) fmt::print("              {} triangles without area were dropped\n", scene.degenerateTriangles);
+    fmt::print("  geometry    {} triangles in {} objects of {} meshes\n", geometry.triangles,
+               geometry.placements.size(), scene.meshes.size());
+    if (scene.degenerateTriangles > 0)
+      fmt::print("              {} triangles without area were dropped\n", scene.degenerateTriangles);
     fmt::print("  materials   {}, textures {}\n", scene.materials.size(), scene.images.size());
-    fmt::print("  lights      {}, emissive triangles {}, environment {}\n", scene.lights.size(), emitters.emissiveTriangles(),
-               !environment.exists() ? "none" : scene.world.texture >= 0 ? "image" : "constant");
+    fmt::print("  lights      {}, emissive triangles {}, environment {}\n", scene.lights.size(),
+               emitters.emissiveTriangles(),
+               !environment.exists()      ? "none"
+               : scene.world.texture >= 0 ? "image"
+                                          : "constant");
     fmt::print("  needs       {}\n", describe(n));
     for (const std::string& s : left) fmt::print("  left out    {}\n", s);
     for (const std::string& s : scene.notes) fmt::print("  note        {}\n", s);

@@ -14,7 +14,9 @@ namespace {
 int fail(bool json, wardmis::ExitCode code, const std::string& what, const std::string& hint) {
   const std::string message = hint.empty() ? what : what + "; " + hint;
   fmt::print(stderr, "wardmis: error: {}\n", message);
-  if (json) fmt::print("{}\n", nlohmann::json{{"event", "error"}, {"code", static_cast<int>(code)}, {"message", message}}.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  if (json)
+    fmt::print("{}\n", nlohmann::json{{"event", "error"}, {"code", static_cast<int>(code)}, {"message", message}}.dump(
+                           -1, ' ', false, nlohmann::json::error_handler_t::replace));
   std::fflush(stdout);
   return static_cast<int>(code);
 }
@@ -23,19 +25,32 @@ int fail(bool json, wardmis::ExitCode code, const std::string& what, const std::
 
 int main(int argc, char** argv) {
   using wardmis::ExitCode;
-  CLI::App app{"WardMIS: the Ward BRDF under multiple importance sampling, with the samples shared between techniques in several ways.", "wardmis"};
+  CLI::App app{
+      "WardMIS: the Ward BRDF under multiple importance sampling, with the samples shared between techniques in "
+      "several ways.",
+      "wardmis"};
   app.set_version_flag("--version", fmt::format("wardmis {} ({})", WARDMIS_VERSION, wardmis::Accel::libraryVersion()));
   app.require_subcommand(1);
   app.failure_message(CLI::FailureMessage::help);
 
   const std::pair<CLI::App*, wardmis::Verb> verbs[] = {
-      [&] { auto* s = app.add_subcommand("render", "render a scene to a multi-layer EXR"); return std::pair{s, wardmis::addRender(*s)}; }(),
-      [&] { auto* s = app.add_subcommand("info", "what a scene holds, needs, and leaves out"); return std::pair{s, wardmis::addInfo(*s)}; }(),
-      [&] { auto* s = app.add_subcommand("compare", "the error of an image against a reference"); return std::pair{s, wardmis::addCompare(*s)}; }(),
+      [&] {
+        auto* s = app.add_subcommand("render", "render a scene to a multi-layer EXR");
+        return std::pair{s, wardmis::addRender(*s)};
+      }(),
+      [&] {
+        auto* s = app.add_subcommand("info", "what a scene holds, needs, and leaves out");
+        return std::pair{s, wardmis::addInfo(*s)};
+      }(),
+      [&] {
+        auto* s = app.add_subcommand("compare", "the error of an image against a reference");
+        return std::pair{s, wardmis::addCompare(*s)};
+      }(),
   };
 
   bool json = false;
-  for (int i = 1; i + 1 < argc; ++i) json |= std::string_view(argv[i]) == "--progress" && std::string_view(argv[i + 1]) == "json";
+  for (int i = 1; i + 1 < argc; ++i)
+    json |= std::string_view(argv[i]) == "--progress" && std::string_view(argv[i + 1]) == "json";
   try {
     app.parse(argc, argv);
     for (const auto& [sub, run] : verbs)
@@ -45,11 +60,13 @@ int main(int argc, char** argv) {
     return app.exit(e);
   } catch (const CLI::ParseError& e) {
     const auto subs = app.get_subcommands();
-    return fail(json, ExitCode::kUsage, e.what(), fmt::format("see 'wardmis {}--help'", subs.empty() ? "" : subs.front()->get_name() + " "));
+    return fail(json, ExitCode::kUsage, e.what(),
+                fmt::format("see 'wardmis {}--help'", subs.empty() ? "" : subs.front()->get_name() + " "));
   } catch (const wardmis::Error& e) {
     return fail(json, e.code, e.what(), e.hint);
   } catch (const std::bad_alloc&) {
-    return fail(json, ExitCode::kMemory, "out of memory", "close other programs, lower the resolution, or simplify the scene");
+    return fail(json, ExitCode::kMemory, "out of memory",
+                "close other programs, lower the resolution, or simplify the scene");
   } catch (const std::exception& e) {
     return fail(json, ExitCode::kFile, e.what(), "");
   }

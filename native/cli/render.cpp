@@ -39,10 +39,12 @@ void onSignal(int signal) {
 double since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
 
 struct Options {
-  std::string scene, output, stats, progress = "auto", preview, layer = "ViewLayer", passes, filter = "scene", resolution;
+  std::string scene, output, stats, progress = "auto", preview, layer = "ViewLayer", passes, filter = "scene",
+                                    resolution;
   double previewInterval = 1;
   bool watchStdin = false;
-  std::string allocation = "second-moment", weights = "auto", integrand = "split", integrator = "path", sampler = "sobol", kernel = "auto";
+  std::string allocation = "second-moment", weights = "auto", integrand = "split", integrator = "path",
+              sampler = "sobol", kernel = "auto";
   RenderSettings settings;
 };
 
@@ -53,7 +55,8 @@ E pick(const std::string& value, const std::array<E, N>& all) {
     if (name(e) == value) return e;
   throw Error(ExitCode::kUsage, "unknown value " + value);
 }
-constexpr std::array kAllocations{AllocationRule::kEqual, AllocationRule::kVariance, AllocationRule::kSecondMoment, AllocationRule::kAlbedo};
+constexpr std::array kAllocations{AllocationRule::kEqual, AllocationRule::kVariance, AllocationRule::kSecondMoment,
+                                  AllocationRule::kAlbedo};
 constexpr std::array kWeights{WeightRule::kBalance, WeightRule::kNonbalance, WeightRule::kPower};
 constexpr std::array kIntegrands{Integrand::kSplit, Integrand::kJoint};
 constexpr std::array kIntegrators{Integrator::kDirect, Integrator::kPath};
@@ -90,13 +93,19 @@ class Reporter {
     fmt::print(stderr, "{}\n", message);
   }
   void progress(const Progress& p) {
-    event({{"event", "progress"}, {"phase", p.pilot ? "pilot" : "render"}, {"samples", p.samples}, {"of", p.of > 0 ? nlohmann::json(p.of) : nlohmann::json()},
-           {"fraction", p.fraction}, {"seconds", p.seconds}, {"left", p.left}});
+    event({{"event", "progress"},
+           {"phase", p.pilot ? "pilot" : "render"},
+           {"samples", p.samples},
+           {"of", p.of > 0 ? nlohmann::json(p.of) : nlohmann::json()},
+           {"fraction", p.fraction},
+           {"seconds", p.seconds},
+           {"left", p.left}});
     if (!bar_) return;
     constexpr int kWidth = 30;
     const int full = static_cast<int>(p.fraction * kWidth);
-    fmt::print(stderr, "\r[{:#<{}}{:.<{}}] {:3.0f} %  {} {}{}  {:.1f} s, {:.1f} s left\x1b[K", "", full, "", kWidth - full, 100 * p.fraction, p.pilot ? "pilot" : "sample",
-               p.samples, p.of > 0 ? fmt::format("/{}", p.of) : "", p.seconds, p.left);
+    fmt::print(stderr, "\r[{:#<{}}{:.<{}}] {:3.0f} %  {} {}{}  {:.1f} s, {:.1f} s left\x1b[K", "", full, "",
+               kWidth - full, 100 * p.fraction, p.pilot ? "pilot" : "sample", p.samples,
+               p.of > 0 ? fmt::format("/{}", p.of) : "", p.seconds, p.left);
     std::fflush(stderr);
     drawn_ = true;
   }
@@ -111,13 +120,25 @@ class Reporter {
 };
 
 json settingsJson(const RenderSettings& s, const Scene& scene) {
-  return {{"allocation", name(s.allocation)}, {"weights", name(s.weightRule())}, {"integrand", name(s.integrand)}, {"integrator", name(s.integrator)},
-          {"sampler", name(s.sampler)}, {"spp", s.seconds > 0 ? json() : json(s.spp)}, {"time", s.seconds > 0 ? json(s.seconds) : json()},
-          {"samples_per_hit", s.samplesPerHit}, {"pilot_spp", s.pilotSpp}, {"min_fraction", s.minFraction}, {"max_depth", s.maxDepth}, {"seed", s.seed},
-          {"filter", name(scene.film.filter)}, {"filter_width", scene.film.filterWidth}, {"kernel", s.generalKernel ? "general" : "auto"}};
+  return {{"allocation", name(s.allocation)},
+          {"weights", name(s.weightRule())},
+          {"integrand", name(s.integrand)},
+          {"integrator", name(s.integrator)},
+          {"sampler", name(s.sampler)},
+          {"spp", s.seconds > 0 ? json() : json(s.spp)},
+          {"time", s.seconds > 0 ? json(s.seconds) : json()},
+          {"samples_per_hit", s.samplesPerHit},
+          {"pilot_spp", s.pilotSpp},
+          {"min_fraction", s.minFraction},
+          {"max_depth", s.maxDepth},
+          {"seed", s.seed},
+          {"filter", name(scene.film.filter)},
+          {"filter_width", scene.film.filterWidth},
+          {"kernel", s.generalKernel ? "general" : "auto"}};
 }
 
-json statisticsJson(const Options& o, const Scene& scene, const Statistics& s, const FilmBuffer& film, double read, double write, double total) {
+json statisticsJson(const Options& o, const Scene& scene, const Statistics& s, const FilmBuffer& film, double read,
+                    double write, double total) {
   const Counts& c = s.counts;
   double variance = 0;
   for (const Pixel& p : film.pixels) variance += static_cast<double>(luminance(film.variance(p)));
@@ -125,14 +146,27 @@ json statisticsJson(const Options& o, const Scene& scene, const Statistics& s, c
   return {{"version", WARDMIS_VERSION},
           {"scene", o.scene},
           {"settings", settingsJson(o.settings, scene)},
-          {"seconds", {{"read", read}, {"build", s.buildSeconds}, {"pilot", s.pilotSeconds}, {"render", s.renderSeconds}, {"write", write}, {"total", total}}},
+          {"seconds",
+           {{"read", read},
+            {"build", s.buildSeconds},
+            {"pilot", s.pilotSeconds},
+            {"render", s.renderSeconds},
+            {"write", write},
+            {"total", total}}},
           {"cpu_seconds", {{"pilot", s.pilotCpuSeconds}, {"render", s.renderCpuSeconds}}},
           {"samples_per_pixel", film.samples},
           {"pixels", film.pixels.size()},
           {"camera_paths", c.cameraRays},
-          {"samples", {{"lobe", c.samples[kLobe]}, {"cosine", c.samples[kCosine]}, {"light", c.samples[kLight]}, {"total", c.samples[0] + c.samples[1] + c.samples[2]}}},
+          {"samples",
+           {{"lobe", c.samples[kLobe]},
+            {"cosine", c.samples[kCosine]},
+            {"light", c.samples[kLight]},
+            {"total", c.samples[0] + c.samples[1] + c.samples[2]}}},
           {"rays",
-           {{"camera", c.cameraRays}, {"lobe", c.lobeRays}, {"cosine", c.cosineRays}, {"shadow", c.shadowRays},
+           {{"camera", c.cameraRays},
+            {"lobe", c.lobeRays},
+            {"cosine", c.cosineRays},
+            {"shadow", c.shadowRays},
             {"total", c.cameraRays + c.lobeRays + c.cosineRays + c.shadowRays}}},
           {"counts", {{"nan", c.rare.nan}, {"infinite", c.rare.infinite}, {"negative", c.rare.negative}}},
           {"needs", describe(s.needs)},
@@ -141,7 +175,10 @@ json statisticsJson(const Options& o, const Scene& scene, const Statistics& s, c
           {"left_out", s.leftOut},
           {"notes", scene.notes},
           {"scene_counts",
-           {{"triangles", s.triangles}, {"instances", s.instances}, {"materials", scene.materials.size()}, {"lights", scene.lights.size()},
+           {{"triangles", s.triangles},
+            {"instances", s.instances},
+            {"materials", scene.materials.size()},
+            {"lights", scene.lights.size()},
             {"emissive_triangles", s.emissiveTriangles}}},
           {"mean_variance", variance},
           {"threads", s.threads},
@@ -156,7 +193,9 @@ std::vector<PassInfo> choosePasses(const std::string& list, TechniqueMask techni
     bool known = want == "allocation";  // a scene may have none
     for (const PassInfo& p : all)
       if (p.group == want) chosen.push_back(p), known = true;
-    if (!known) throw Error(ExitCode::kUsage, fmt::format("--passes: there is no pass '{}'", want), "known: combined, depth, normal, albedo, variance, allocation");
+    if (!known)
+      throw Error(ExitCode::kUsage, fmt::format("--passes: there is no pass '{}'", want),
+                  "known: combined, depth, normal, albedo, variance, allocation");
   }
   return chosen;
 }
@@ -165,13 +204,16 @@ std::vector<PassInfo> choosePasses(const std::string& list, TechniqueMask techni
 void checkWritable(const std::string& path) {
   const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
   if (!std::filesystem::is_directory(folder))
-    throw Error(ExitCode::kFile, fmt::format("{}: its folder does not exist", path), "make the folder, or choose another one");
-  if (std::filesystem::is_directory(path)) throw Error(ExitCode::kFile, fmt::format("{}: is a folder", path), "name a file in it");
+    throw Error(ExitCode::kFile, fmt::format("{}: its folder does not exist", path),
+                "make the folder, or choose another one");
+  if (std::filesystem::is_directory(path))
+    throw Error(ExitCode::kFile, fmt::format("{}: is a folder", path), "name a file in it");
   // By doing it: access() grants root what some file systems then refuse.
   const std::string probe = (folder / fmt::format(".wardmis-{}", getpid())).string();
   const int fd = open(probe.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
   if (fd < 0)
-    throw Error(ExitCode::kFile, fmt::format("{}: its folder is not writable: {}", path, std::strerror(errno)), "check its permissions, or choose another one");
+    throw Error(ExitCode::kFile, fmt::format("{}: its folder is not writable: {}", path, std::strerror(errno)),
+                "check its permissions, or choose another one");
   close(fd);
   unlink(probe.c_str());
 }
@@ -180,7 +222,8 @@ void writeText(const std::string& path, const std::string& text) {
   std::ofstream f(path);
   f << text << '\n';
   f.close();
-  if (!f) throw Error(ExitCode::kFile, path + ": cannot be written", "check the folder, its permissions and the free space");
+  if (!f)
+    throw Error(ExitCode::kFile, path + ": cannot be written", "check the folder, its permissions and the free space");
 }
 
 void useResolution(Scene& scene, const std::string& text) {
@@ -222,7 +265,7 @@ int run(Options& o) {
   for (const std::string* path : {&o.stats, &o.preview})
     if (!path->empty()) checkWritable(*path);
 
-  struct sigaction action{};
+  struct sigaction action {};
   action.sa_handler = onSignal;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
@@ -249,14 +292,22 @@ int run(Options& o) {
   observer.stop = &stopRequest;
   observer.started = [&](const Statistics& st) {
     json passes = json::array();
-    for (const PassInfo& p : choosePasses(o.passes, st.techniques)) passes.push_back({{"name", p.name}, {"channels", p.channels}});
-    reporter.event({{"event", "start"}, {"version", WARDMIS_VERSION}, {"width", scene.film.x1 - scene.film.x0}, {"height", scene.film.y1 - scene.film.y0},
-                    {"spp", s.seconds > 0 ? json() : json(s.spp)}, {"passes", passes}, {"left_out", st.leftOut}, {"notes", scene.notes}});
+    for (const PassInfo& p : choosePasses(o.passes, st.techniques))
+      passes.push_back({{"name", p.name}, {"channels", p.channels}});
+    reporter.event({{"event", "start"},
+                    {"version", WARDMIS_VERSION},
+                    {"width", scene.film.x1 - scene.film.x0},
+                    {"height", scene.film.y1 - scene.film.y0},
+                    {"spp", s.seconds > 0 ? json() : json(s.spp)},
+                    {"passes", passes},
+                    {"left_out", st.leftOut},
+                    {"notes", scene.notes}});
     reporter.info(fmt::format("{}: {} triangles, kernel: {}", o.scene, st.triangles, describe(st.kernel)));
     for (const std::string& left : st.leftOut) reporter.info("  left out: " + left);
     if (!reporter.json())
       for (const std::string& note : scene.notes) reporter.warn(note);
-    if (scene.degenerateTriangles > 0) reporter.info(fmt::format("  dropped: {} triangles without area", scene.degenerateTriangles));
+    if (scene.degenerateTriangles > 0)
+      reporter.info(fmt::format("  dropped: {} triangles without area", scene.degenerateTriangles));
   };
   observer.progress = [&](const Progress& p) { reporter.progress(p); };
   auto lastPreview = Clock::now();
@@ -286,9 +337,12 @@ int run(Options& o) {
   const auto writeStart = Clock::now();
   ExrImage image = toPasses(film, choosePasses(o.passes, st.techniques), o.layer, scene.zUp);
   const json statsBefore = statisticsJson(o, scene, st, film, readSeconds, 0, since(start));
-  for (const char* key : {"version", "settings", "seconds", "samples_per_pixel", "samples", "rays", "counts", "needs", "kernel", "left_out", "notes", "threads"}) {
+  for (const char* key : {"version", "settings", "seconds", "samples_per_pixel", "samples", "rays", "counts", "needs",
+                          "kernel", "left_out", "notes", "threads"}) {
     const json& v = statsBefore.at(key);
-    image.attributes.emplace_back(fmt::format("wardmis:{}", key), v.is_string() ? v.get<std::string>() : v.dump(-1, ' ', false, json::error_handler_t::replace));
+    image.attributes.emplace_back(
+        fmt::format("wardmis:{}", key),
+        v.is_string() ? v.get<std::string>() : v.dump(-1, ' ', false, json::error_handler_t::replace));
   }
   writeExr(output, image, true);
   const json stats = statisticsJson(o, scene, st, film, readSeconds, since(writeStart), since(start));
@@ -296,14 +350,17 @@ int run(Options& o) {
 
   const RareCounts& rare = st.counts.rare;
   if (rare.total() > 0)
-    reporter.warn(fmt::format("{} of {} camera samples were dropped: {} not a number, {} infinite, {} negative; the image lacks their light", rare.total(),
-                              st.counts.cameraRays, rare.nan, rare.infinite, rare.negative));
+    reporter.warn(fmt::format(
+        "{} of {} camera samples were dropped: {} not a number, {} infinite, {} negative; the image lacks their light",
+        rare.total(), st.counts.cameraRays, rare.nan, rare.infinite, rare.negative));
   if (stopped == Stop::kKeep)
-    throw Error(ExitCode::kCancelled, fmt::format("cancelled after {} samples per pixel; the image so far is in {}", film.samples, output));
-  reporter.event({{"event", "done"}, {"path", output}, {"seconds", since(start)}, {"samples", film.samples}, {"stats", stats}});
+    throw Error(ExitCode::kCancelled,
+                fmt::format("cancelled after {} samples per pixel; the image so far is in {}", film.samples, output));
+  reporter.event(
+      {{"event", "done"}, {"path", output}, {"seconds", since(start)}, {"samples", film.samples}, {"stats", stats}});
   if (!reporter.json())
-    fmt::print("{}: {} samples per pixel, {:.2f} s (pilot {:.2f} s), {} rays\n", output, film.samples, st.pilotSeconds + st.renderSeconds, st.pilotSeconds,
-               stats["rays"]["total"].get<uint64_t>());
+    fmt::print("{}: {} samples per pixel, {:.2f} s (pilot {:.2f} s), {} rays\n", output, film.samples,
+               st.pilotSeconds + st.renderSeconds, st.pilotSeconds, stats["rays"]["total"].get<uint64_t>());
   return 0;
 }
 
@@ -314,28 +371,58 @@ Verb addRender(CLI::App& app) {
   RenderSettings& s = o->settings;
   app.add_option("SCENE", o->scene, "a .glb or .gltf file")->required();
   app.add_option("-o,--output", o->output, "the EXR to write")->required();
-  app.add_option("--allocation", o->allocation, "how the samples of a hit are shared")->check(among(kAllocations))->capture_default_str();
-  app.add_option("--weights", o->weights, "MIS weights; auto: what the paper pairs with the allocation")->check(among(kWeights, {"auto"}))->capture_default_str();
-  app.add_option("--integrand", o->integrand, "specular and diffuse as separate integrals or as one")->check(among(kIntegrands))->capture_default_str();
-  app.add_option("--integrator", o->integrator, "direct light only, or all of it")->check(among(kIntegrators))->capture_default_str();
-  app.add_option("--sampler", o->sampler, "where the random numbers come from")->check(among(kSamplers))->capture_default_str();
-  auto* spp = app.add_option("--spp", s.spp, "camera samples per pixel, the pilot's included")->check(CLI::Range(1u, 1u << 24))->capture_default_str();
-  app.add_option("--time", s.seconds, "stop after this many seconds instead, the pilot's included")->check(CLI::Range(0.001, 1e7))->excludes(spp);
-  app.add_option("--samples-per-hit", s.samplesPerHit, "samples shared at the first hit")->check(CLI::Range(1, kMaxSamplesPerHit))->capture_default_str();
-  app.add_option("--pilot-spp", s.pilotSpp, "camera samples per pixel that estimate the moments")->check(CLI::Range(0u, 1u << 20))->capture_default_str();
-  app.add_option("--min-fraction", s.minFraction, "no technique gets less than this share")->check(CLI::Range(0.001f, 0.5f))->capture_default_str();
-  app.add_option("--max-depth", s.maxDepth, "surface hits of a path; 1 is direct light")->check(CLI::Range(1, 1024))->capture_default_str();
+  app.add_option("--allocation", o->allocation, "how the samples of a hit are shared")
+      ->check(among(kAllocations))
+      ->capture_default_str();
+  app.add_option("--weights", o->weights, "MIS weights; auto: what the paper pairs with the allocation")
+      ->check(among(kWeights, {"auto"}))
+      ->capture_default_str();
+  app.add_option("--integrand", o->integrand, "specular and diffuse as separate integrals or as one")
+      ->check(among(kIntegrands))
+      ->capture_default_str();
+  app.add_option("--integrator", o->integrator, "direct light only, or all of it")
+      ->check(among(kIntegrators))
+      ->capture_default_str();
+  app.add_option("--sampler", o->sampler, "where the random numbers come from")
+      ->check(among(kSamplers))
+      ->capture_default_str();
+  auto* spp = app.add_option("--spp", s.spp, "camera samples per pixel, the pilot's included")
+                  ->check(CLI::Range(1u, 1u << 24))
+                  ->capture_default_str();
+  app.add_option("--time", s.seconds, "stop after this many seconds instead, the pilot's included")
+      ->check(CLI::Range(0.001, 1e7))
+      ->excludes(spp);
+  app.add_option("--samples-per-hit", s.samplesPerHit, "samples shared at the first hit")
+      ->check(CLI::Range(1, kMaxSamplesPerHit))
+      ->capture_default_str();
+  app.add_option("--pilot-spp", s.pilotSpp, "camera samples per pixel that estimate the moments")
+      ->check(CLI::Range(0u, 1u << 20))
+      ->capture_default_str();
+  app.add_option("--min-fraction", s.minFraction, "no technique gets less than this share")
+      ->check(CLI::Range(0.001f, 0.5f))
+      ->capture_default_str();
+  app.add_option("--max-depth", s.maxDepth, "surface hits of a path; 1 is direct light")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
   app.add_option("--filter", o->filter, "pixel filter")->check(among(kFilters, {"scene"}))->capture_default_str();
   app.add_option("--seed", s.seed, "another seed, another noise")->capture_default_str();
-  app.add_option("--threads", s.threads, "0: all; the image does not depend on it")->check(CLI::Range(0, 1024))->capture_default_str();
+  app.add_option("--threads", s.threads, "0: all; the image does not depend on it")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
   app.add_option("--resolution", o->resolution, "WIDTHxHEIGHT instead of the scene's");
   app.add_option("--layer", o->layer, "first part of the EXR's channel names")->capture_default_str();
   app.add_option("--passes", o->passes, "of combined,depth,normal,albedo,variance,allocation (default: all)");
-  app.add_option("--kernel", o->kernel, "general: with everything compiled in; the image is the same")->check(CLI::IsMember({"auto", "general"}))->capture_default_str();
+  app.add_option("--kernel", o->kernel, "general: with everything compiled in; the image is the same")
+      ->check(CLI::IsMember({"auto", "general"}))
+      ->capture_default_str();
   app.add_option("--stats", o->stats, "write statistics to this JSON file");
-  app.add_option("--progress", o->progress, "bar, json or none")->check(CLI::IsMember({"auto", "bar", "json", "none"}))->capture_default_str();
+  app.add_option("--progress", o->progress, "bar, json or none")
+      ->check(CLI::IsMember({"auto", "bar", "json", "none"}))
+      ->capture_default_str();
   app.add_option("--preview", o->preview, "rewrite this EXR with the image so far");
-  app.add_option("--preview-interval", o->previewInterval, "seconds between previews")->check(CLI::Range(0.0, 1e6))->capture_default_str();
+  app.add_option("--preview-interval", o->previewInterval, "seconds between previews")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
   app.add_flag("--watch-stdin", o->watchStdin, "stop when standard input is closed");
   return [o] { return run(*o); };
 }

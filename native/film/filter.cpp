@@ -19,8 +19,8 @@ PixelFilter::PixelFilter(FilterType type, float width) {
     const double q = 2 * kPi<double> * (v / (2 * w) + 0.5);
     return std::max(0.0, 0.35875 - 0.48829 * std::cos(q) + 0.14128 * std::cos(2 * q) - 0.01168 * std::cos(3 * q));
   };
-  // cumulated by the trapezoidal rule on a fine grid, then inverted at equal steps of probability; steps so small because
-  // the first and the last one reach over the whole tail (with 2^10 the Gaussian's variance is 2 % too large)
+  // cumulated by the trapezoidal rule on a fine grid, then inverted at equal steps of probability; steps so small
+  // because the first and the last one reach over the whole tail (with 2^10 the Gaussian's variance is 2 % too large)
   constexpr size_t kGrid = 1 << 14, kQuantiles = 1 << 14;
   std::vector<double> cumulated(kGrid + 1, 0);
   const double step = 2 * radius / kGrid;

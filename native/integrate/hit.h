@@ -49,7 +49,16 @@ class Scratch {
 };
 
 // Names of the random numbers that a vertex uses; the number's dimension is vertex * kPerVertex + name.
-enum Dimension : uint32_t { kFilmPoint = 0, kLensPoint, kSampleCounts, kLobePoint, kCosinePoint, kLightPoint, kRoulette, kPerVertex };
+enum Dimension : uint32_t {
+  kFilmPoint = 0,
+  kLensPoint,
+  kSampleCounts,
+  kLobePoint,
+  kCosinePoint,
+  kLightPoint,
+  kRoulette,
+  kPerVertex
+};
 
 // How a hit is to be sampled.
 struct HitPlan {
@@ -80,16 +89,16 @@ struct HitMoments {
 
 // Estimates the direct light at x, in double where T is (sharp lobes). Continuations are kept only if N needs bounces.
 template <uint32_t N, class T>
-Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interaction& x, const HitPlan& plan, Counts& counts,
-                HitMoments* moments, Continuations& continuations) {
+Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interaction& x, const HitPlan& plan,
+                Counts& counts, HitMoments* moments, Continuations& continuations) {
   constexpr bool kSpec = (N & kNeedsSpecular) != 0, kDiff = (N & kNeedsDiffuse) != 0, kPath = (N & kNeedsBounces) != 0;
   const Surface& s = x.surface;
   const bool specular = kSpec && s.hasSpecular(), diffuse = kDiff && s.hasDiffuse();
   const bool split = plan.integrand == Integrand::kSplit;
   const Mixture mixture(plan.fractions, plan.samples, plan.weights);
   const uint32_t dimension = plan.vertex * kPerVertex;
-  const std::array<int, kTechniques> n =
-      systematicCounts(plan.fractions, plan.samples, sampler.get1D(plan.pixelKey, dimension + kSampleCounts, plan.index));
+  const std::array<int, kTechniques> n = systematicCounts(
+      plan.fractions, plan.samples, sampler.get1D(plan.pixelKey, dimension + kSampleCounts, plan.index));
   const Vec3f woFloat = x.frame.toLocal(x.wo);
   const Vec3<T> wo{T(woFloat.x), T(woFloat.y), T(woFloat.z)};
 
@@ -176,7 +185,8 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
         if (world.accel.occluded(shadow)) continue;
       }
       if (l.exclusive) {
-        const Rgb f = ((l.visibility & kSeenByGlossy) != 0 ? fs : Rgb{}) + ((l.visibility & kSeenByDiffuse) != 0 ? fd : Rgb{});
+        const Rgb f =
+            ((l.visibility & kSeenByGlossy) != 0 ? fs : Rgb{}) + ((l.visibility & kSeenByDiffuse) != 0 ? fd : Rgb{});
         sum += f * l.radiance / (l.pdf * mixture.n[kLight]);
       } else {
         p[kLight] = l.pdf;
@@ -186,7 +196,8 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     }
 
     // A surface technique: follow the ray to what it meets.
-    const Vec3f d = normalize(x.frame.toWorld(Vec3f{static_cast<float>(wi.x), static_cast<float>(wi.y), static_cast<float>(wi.z)}));
+    const Vec3f d =
+        normalize(x.frame.toWorld(Vec3f{static_cast<float>(wi.x), static_cast<float>(wi.y), static_cast<float>(wi.z)}));
     if (!(dot(x.geometric, d) > 0)) continue;
     Ray ray;
     ray.origin = x.leave(d);

@@ -77,7 +77,8 @@ Interaction interact(const Scene& scene, const Geometry& geometry, const Ray& ra
   x.material = shape.material;
   x.placement = hit.placement;
   x.wo = -ray.direction;
-  const Vec3f p = shape.positions[i[0]] * (1 - hit.u - hit.v) + shape.positions[i[1]] * hit.u + shape.positions[i[2]] * hit.v;
+  const Vec3f p =
+      shape.positions[i[0]] * (1 - hit.u - hit.v) + shape.positions[i[1]] * hit.u + shape.positions[i[2]] * hit.v;
   x.position = placement.flat ? p : placement.toWorld.point(p);
   Vec3f ng = placement.flat ? hit.normal : placement.toWorld.normal(hit.normal);
   ng = normalize(ng);
@@ -99,7 +100,9 @@ Interaction interact(const Scene& scene, const Geometry& geometry, const Ray& ra
   // UVs are in the file only where a texture is looked up (the reader leaves the others out).
   const Vec2f uv = shape.part->uvs.empty() ? Vec2f{} : detail::interpolate(shape.part->uvs, i, hit.u, hit.v);
   const auto color = [&](const ColorInput& c) { return c.texture.texture >= 0 ? evaluate(scene, c, uv) : c.value; };
-  const auto alpha = [&](const ScalarInput& c) { return c.texture.texture >= 0 ? evaluateAlpha(scene, c, uv) : c.value; };
+  const auto alpha = [&](const ScalarInput& c) {
+    return c.texture.texture >= 0 ? evaluateAlpha(scene, c, uv) : c.value;
+  };
   if constexpr ((N & kNeedsDiffuse) != 0) x.surface.diffuse = color(m.diffuse);
   if constexpr ((N & kNeedsSpecular) != 0) {
     x.surface.specular = color(m.specular);

@@ -25,11 +25,12 @@ struct KernelInput {
 };
 
 struct Tile {
-  int x0, y0, x1, y1;           // within the border
+  int x0, y0, x1, y1;  // within the border
   uint32_t firstSample, samples;
 };
 
-// Adds camera samples firstSample .. +samples of the tile's pixels to the film, and, where `pilot` is given, their moments.
+// Adds camera samples firstSample .. +samples of the tile's pixels to the film, and, where `pilot` is given, their
+// moments.
 using TileKernel = void (*)(const KernelInput&, const Tile&, FilmBuffer&, Pilot* pilot, Counts&);
 
 // The kernel for a mask of kKernelNeeds bits.

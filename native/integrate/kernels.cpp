@@ -8,14 +8,17 @@ namespace wardmis {
 namespace {
 
 // A scene that reflects nothing takes the diffuse kernel: a superset, and never timed.
-constexpr uint32_t compiled(uint32_t needs) { return (needs & (kNeedsDiffuse | kNeedsSpecular)) != 0 ? needs : needs | kNeedsDiffuse; }
+constexpr uint32_t compiled(uint32_t needs) {
+  return (needs & (kNeedsDiffuse | kNeedsSpecular)) != 0 ? needs : needs | kNeedsDiffuse;
+}
 
 }  // namespace
 
 TileKernel tileKernel(uint32_t needs) {
   static constexpr auto table = []<uint32_t... N>(std::integer_sequence<uint32_t, N...>) {
     return std::array<TileKernel, sizeof...(N)>{&renderTile<compiled(N)>...};
-  }(std::make_integer_sequence<uint32_t, kKernelNeeds + 1>{});
+  }
+  (std::make_integer_sequence<uint32_t, kKernelNeeds + 1>{});
   return table[needs & kKernelNeeds];
 }
 

@@ -14,7 +14,8 @@ inline Fractions albedoFractions(const Surface& s) {
   return {0.5f * lobe, 0.5f * (1 - lobe), 0.5f};
 }
 
-// The techniques that a surface has, where emitters are aimed at or not, and where surface samples find anything or not.
+// The techniques that a surface has, where emitters are aimed at or not, and where surface samples find anything or
+// not.
 inline TechniqueMask techniquesAt(const Surface& s, bool lights, bool surfaceRays) {
   TechniqueMask mask = lights ? maskOf(kLight) : TechniqueMask{0};
   if (surfaceRays && s.hasSpecular()) mask |= maskOf(kLobe);
@@ -23,22 +24,23 @@ inline TechniqueMask techniquesAt(const Surface& s, bool lights, bool surfaceRay
 }
 
 template <uint32_t N>
-Rgb estimate(const RenderScene& scene, const Sampler& sampler, const Interaction& x, const HitPlan& plan, Counts& counts,
-             HitMoments* moments, Continuations& more) {
+Rgb estimate(const RenderScene& scene, const Sampler& sampler, const Interaction& x, const HitPlan& plan,
+             Counts& counts, HitMoments* moments, Continuations& more) {
   if ((N & kNeedsSpecular) != 0 && x.surface.needsDouble())
     return estimateHit<N, double>(scene, sampler, x, plan, counts, moments, more);
   return estimateHit<N, float>(scene, sampler, x, plan, counts, moments, more);
 }
 
-// Radiance reflected at the end of `first`, times its weight. index: of this path among the pixel's; depth: surface hits
-// of a path, the first one included.
+// Radiance reflected at the end of `first`, times its weight. index: of this path among the pixel's; depth: surface
+// hits of a path, the first one included.
 template <uint32_t N>
-Rgb followPath(const RenderScene& scene, const Sampler& sampler, uint32_t pixelKey, uint32_t index, const Continuation& first,
-               int depth, Counts& counts) {
+Rgb followPath(const RenderScene& scene, const Sampler& sampler, uint32_t pixelKey, uint32_t index,
+               const Continuation& first, int depth, Counts& counts) {
   const bool lights = scene.emitters.any();
   Rgb sum{0, 0, 0};
   Rgb weight = first.weight;
-  float survived = 1;  // product of the vertices' own weights: what the roulette looks at, whatever the first hit's counts
+  float survived =
+      1;  // product of the vertices' own weights: what the roulette looks at, whatever the first hit's counts
   Ray ray = first.ray;
   Hit hit = first.hit;
   const std::array<uint64_t, kTechniques> firstHitSamples = counts.samples;

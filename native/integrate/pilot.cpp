@@ -5,7 +5,8 @@
 
 namespace wardmis {
 
-std::vector<Fractions> Pilot::fractions(AllocationRule rule, Integrand integrand, TechniqueMask available, float minimum) const {
+std::vector<Fractions> Pilot::fractions(AllocationRule rule, Integrand integrand, TechniqueMask available,
+                                        float minimum) const {
   constexpr int kRadius = 3;         // 7 x 7 pixels
   constexpr float kSameFace = 0.9f;  // cos of the largest turn of the normal that still is "the same surface"
   std::vector<Fractions> result(pixels.size());
@@ -16,13 +17,16 @@ std::vector<Fractions> Pilot::fractions(AllocationRule rule, Integrand integrand
       for (int v = std::max(0, y - kRadius); v <= std::min(height - 1, y + kRadius); ++v)
         for (int u = std::max(0, x - kRadius); u <= std::min(width - 1, x + kRadius); ++u) {
           const PilotPixel& q = pixels[static_cast<size_t>(v) * static_cast<size_t>(width) + static_cast<size_t>(u)];
-          if (q.material != center.material || q.placement != center.placement || dot(q.normal, center.normal) < kSameFace) continue;
+          if (q.material != center.material || q.placement != center.placement ||
+              dot(q.normal, center.normal) < kSameFace)
+            continue;
           m.specular += q.moments.specular;
           m.diffuse += q.moments.diffuse;
         }
       Fractions& a = result[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)];
       const TechniqueMask mask = available & center.techniques;
-      a = integrand == Integrand::kJoint ? allocate(rule, m.specular, mask, minimum) : allocateSplit(rule, m.specular, m.diffuse, mask, minimum);
+      a = integrand == Integrand::kJoint ? allocate(rule, m.specular, mask, minimum)
+                                         : allocateSplit(rule, m.specular, m.diffuse, mask, minimum);
     }
   });
   return result;

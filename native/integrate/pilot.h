@@ -22,7 +22,8 @@ struct Pilot {
   Pilot(int w, int h) : width(w), height(h), pixels(static_cast<size_t>(w) * static_cast<size_t>(h)) {}
 
   // Fractions per pixel of the techniques that the scene has (`available`).
-  std::vector<Fractions> fractions(AllocationRule rule, Integrand integrand, TechniqueMask available, float minimum) const;
+  std::vector<Fractions> fractions(AllocationRule rule, Integrand integrand, TechniqueMask available,
+                                   float minimum) const;
 };
 
 }  // namespace wardmis

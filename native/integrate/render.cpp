@@ -59,7 +59,8 @@ class Ticker {
 // One render in progress: passes of whole tiles, each adding the same number of camera samples to every pixel.
 class Run {
  public:
-  Run(const RenderSettings& settings, const RenderObserver& observer, FilmBuffer& film, KernelInput& input, TileKernel kernel)
+  Run(const RenderSettings& settings, const RenderObserver& observer, FilmBuffer& film, KernelInput& input,
+      TileKernel kernel)
       : settings_(settings), observer_(observer), film_(film), input_(input), kernel_(kernel), start_(wallSeconds()) {}
 
   double seconds() const { return wallSeconds() - start_; }
@@ -72,15 +73,23 @@ class Run {
     const double total = double(tilesX) * tilesY;
     std::atomic<int> done{0};
     const Ticker ticker([&] { report(pilot != nullptr, samples * done.load() / total); });
-    tbb::parallel_for(tbb::blocked_range2d<int>(0, tilesY, 1, 0, tilesX, 1), [&](const auto& range) {
-      for (int ty = range.rows().begin(); ty != range.rows().end(); ++ty)
-        for (int tx = range.cols().begin(); tx != range.cols().end(); ++tx) {
-          if (stop() == Stop::kDiscard) return;
-          const Tile tile{tx * kTileSize, ty * kTileSize, std::min(film_.width, (tx + 1) * kTileSize), std::min(film_.height, (ty + 1) * kTileSize), film_.samples, samples};
-          kernel_(input_, tile, film_, pilot, counts_.local());
-          ++done;
-        }
-    }, tbb::simple_partitioner());
+    tbb::parallel_for(
+        tbb::blocked_range2d<int>(0, tilesY, 1, 0, tilesX, 1),
+        [&](const auto& range) {
+          for (int ty = range.rows().begin(); ty != range.rows().end(); ++ty)
+            for (int tx = range.cols().begin(); tx != range.cols().end(); ++tx) {
+              if (stop() == Stop::kDiscard) return;
+              const Tile tile{tx * kTileSize,
+                              ty * kTileSize,
+                              std::min(film_.width, (tx + 1) * kTileSize),
+                              std::min(film_.height, (ty + 1) * kTileSize),
+                              film_.samples,
+                              samples};
+              kernel_(input_, tile, film_, pilot, counts_.local());
+              ++done;
+            }
+        },
+        tbb::simple_partitioner());
     if (stop() == Stop::kDiscard) return false;
     film_.samples += samples;
     return true;
@@ -119,8 +128,11 @@ class Run {
     p.samples = film_.samples;
     p.of = settings_.seconds > 0 ? 0 : settings_.spp;
     p.seconds = seconds();
-    p.fraction = settings_.seconds > 0 ? std::min(1.0, p.seconds / settings_.seconds) : (film_.samples + partial) / settings_.spp;
-    p.left = settings_.seconds > 0 ? std::max(0.0, settings_.seconds - p.seconds) : p.fraction > 0 ? p.seconds * (1 - p.fraction) / p.fraction : 0;
+    p.fraction = settings_.seconds > 0 ? std::min(1.0, p.seconds / settings_.seconds)
+                                       : (film_.samples + partial) / settings_.spp;
+    p.left = settings_.seconds > 0 ? std::max(0.0, settings_.seconds - p.seconds)
+             : p.fraction > 0      ? p.seconds * (1 - p.fraction) / p.fraction
+                                   : 0;
     observer_.progress(p);
   }
 
@@ -133,8 +145,10 @@ class Run {
   tbb::enumerable_thread_specific<Counts> counts_;
 };
 
-FilmBuffer renderInArena(const Scene& scene, const RenderSettings& settings, Statistics& stats, const RenderObserver& observer) {
-  if (!scene.camera) throw Error(ExitCode::kScene, scene.path + ": the scene has no camera", "add a camera, or make one active");
+FilmBuffer renderInArena(const Scene& scene, const RenderSettings& settings, Statistics& stats,
+                         const RenderObserver& observer) {
+  if (!scene.camera)
+    throw Error(ExitCode::kScene, scene.path + ": the scene has no camera", "add a camera, or make one active");
   const double buildStart = wallSeconds();
   Geometry geometry(scene);
   const Environment environment(scene);
@@ -158,7 +172,8 @@ FilmBuffer renderInArena(const Scene& scene, const RenderSettings& settings, Sta
   if (surfaceRays && (n & kNeedsSpecular) != 0) stats.techniques |= maskOf(kLobe);
   if (surfaceRays && (n & kNeedsDiffuse) != 0) stats.techniques |= maskOf(kCosine);
   const uint32_t target = settings.seconds > 0 ? ~uint32_t{0} : settings.spp;
-  stats.allocated = needsMoments(settings.allocation) && (n & kNeedsAllocation) != 0 && settings.pilotSpp > 0 && settings.pilotSpp < target;
+  stats.allocated = needsMoments(settings.allocation) && (n & kNeedsAllocation) != 0 && settings.pilotSpp > 0 &&
+                    settings.pilotSpp < target;
 
   const Film& film = scene.film;
   FilmBuffer buffer(film.x1 - film.x0, film.y1 - film.y0);
@@ -166,11 +181,25 @@ FilmBuffer renderInArena(const Scene& scene, const RenderSettings& settings, Sta
   const CameraRays camera(*scene.camera, film);
   const PixelFilter filter(film.filter, film.filterWidth);
   const Sampler sampler(settings.sampler, settings.seed, settings.seconds > 0 ? 64 : settings.spp);
-  KernelInput input{world, camera, filter, sampler, nullptr, {}, settings.allocation, settings.integrand, settings.weightRule(),
-                    settings.samplesPerHit, settings.integrator == Integrator::kPath ? settings.maxDepth : 1, emitters.any(), surfaceRays, film.x0, film.y0};
+  KernelInput input{world,
+                    camera,
+                    filter,
+                    sampler,
+                    nullptr,
+                    {},
+                    settings.allocation,
+                    settings.integrand,
+                    settings.weightRule(),
+                    settings.samplesPerHit,
+                    settings.integrator == Integrator::kPath ? settings.maxDepth : 1,
+                    emitters.any(),
+                    surfaceRays,
+                    film.x0,
+                    film.y0};
   // Before the pilot, and for `equal`: the same count for every technique of an integral.
   const TechniqueMask available = stats.techniques;
-  input.fractions = joint ? allocate(AllocationRule::kEqual, {}, available, 0) : allocateSplit(AllocationRule::kEqual, {}, {}, available, 0);
+  input.fractions = joint ? allocate(AllocationRule::kEqual, {}, available, 0)
+                          : allocateSplit(AllocationRule::kEqual, {}, {}, available, 0);
 
   Run run(settings, observer, buffer, input, tileKernel(stats.kernel));
   if (observer.started) observer.started(stats);
@@ -195,7 +224,8 @@ FilmBuffer renderInArena(const Scene& scene, const RenderSettings& settings, Sta
 
 }  // namespace
 
-FilmBuffer render(const Scene& scene, const RenderSettings& settings, Statistics& statistics, const RenderObserver& observer) {
+FilmBuffer render(const Scene& scene, const RenderSettings& settings, Statistics& statistics,
+                  const RenderObserver& observer) {
   const int threads = settings.threads > 0 ? settings.threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
   tbb::task_arena arena(threads);

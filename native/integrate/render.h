@@ -25,14 +25,14 @@ struct RenderSettings {
   Integrand integrand = Integrand::kSplit;
   Integrator integrator = Integrator::kPath;
   SamplerType sampler = SamplerType::kSobol;
-  uint32_t spp = 64;    // camera samples per pixel, the pilot's included
-  double seconds = 0;   // > 0: stop after this time instead
+  uint32_t spp = 64;   // camera samples per pixel, the pilot's included
+  double seconds = 0;  // > 0: stop after this time instead
   int samplesPerHit = 3;
   uint32_t pilotSpp = 4;
   float minFraction = 0.1f;
-  int maxDepth = 8;     // surface hits of a path
+  int maxDepth = 8;  // surface hits of a path
   uint64_t seed = 0;
-  int threads = 0;      // 0: all
+  int threads = 0;  // 0: all
   bool generalKernel = false;
 
   WeightRule weightRule() const { return weights.value_or(paperWeights(allocation)); }
@@ -63,11 +63,12 @@ enum class Stop : int { kNo = 0, kKeep, kDiscard };  // stop, keeping the image 
 struct RenderObserver {
   std::function<void(const Statistics&)> started;  // needs and what is left out are known
   std::function<void(const Progress&)> progress;
-  std::function<void(const FilmBuffer&)> image;    // between passes: the film is at rest
+  std::function<void(const FilmBuffer&)> image;  // between passes: the film is at rest
   const std::atomic<Stop>* stop = nullptr;
 };
 
 // Renders scene.film's border. The scene must have a camera. Throws Error.
-FilmBuffer render(const Scene& scene, const RenderSettings& settings, Statistics& statistics, const RenderObserver& observer = {});
+FilmBuffer render(const Scene& scene, const RenderSettings& settings, Statistics& statistics,
+                  const RenderObserver& observer = {});
 
 }  // namespace wardmis

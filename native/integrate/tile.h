@@ -9,8 +9,8 @@ namespace wardmis {
 
 // Radiance along one camera ray.
 template <uint32_t N>
-Rgb cameraSample(const KernelInput& in, const Ray& ray, uint32_t pixelKey, uint32_t sample, const Fractions* pixelFractions,
-                 Pixel& pixel, PilotPixel* pilot, Counts& counts) {
+Rgb cameraSample(const KernelInput& in, const Ray& ray, uint32_t pixelKey, uint32_t sample,
+                 const Fractions* pixelFractions, Pixel& pixel, PilotPixel* pilot, Counts& counts) {
   const RenderScene& world = in.scene;
   ++counts.cameraRays;
   const Hit hit = world.accel.intersect(ray);
@@ -53,7 +53,9 @@ Rgb cameraSample(const KernelInput& in, const Ray& ray, uint32_t pixelKey, uint3
   for (size_t i = 0; i < kTechniques; ++i) pixel.techniques[i] += static_cast<float>(counts.samples[i] - before[i]);
   if constexpr ((N & kNeedsBounces) != 0)
     for (int k = 0; k < more.count; ++k)
-      sum += followPath<N>(world, in.sampler, pixelKey, sample * static_cast<uint32_t>(in.samplesPerHit) + static_cast<uint32_t>(k), more.list[k], in.depth, counts);
+      sum += followPath<N>(world, in.sampler, pixelKey,
+                           sample * static_cast<uint32_t>(in.samplesPerHit) + static_cast<uint32_t>(k), more.list[k],
+                           in.depth, counts);
   return sum;
 }
 
@@ -71,7 +73,8 @@ void renderTile(const KernelInput& in, const Tile& tile, FilmBuffer& film, Pilot
       for (uint32_t s = tile.firstSample; s < tile.firstSample + tile.samples; ++s) {
         const Vec2f offset = in.filter.sample(in.sampler.get2D(key, kFilmPoint, s));
         const Vec2f lens = in.camera.needsLens() ? in.sampler.get2D(key, kLensPoint, s) : Vec2f{};
-        const Ray ray = in.camera.ray(static_cast<float>(px) + 0.5f + offset.x, static_cast<float>(py) + 0.5f + offset.y, lens);
+        const Ray ray =
+            in.camera.ray(static_cast<float>(px) + 0.5f + offset.x, static_cast<float>(py) + 0.5f + offset.y, lens);
         const Rgb value = cameraSample<N>(in, ray, key, s, fractions, pixel, pilotPixel, counts) * exposure;
         if (counts.rare.admit(value)) pixel.add(value);
       }

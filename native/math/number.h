@@ -35,7 +35,7 @@ inline float exp<float>(float x) {
   const float magic = 12582912.0f;  // 1.5 * 2^23: adding it rounds to the nearest integer
   const float n = (y * 1.44269504f + magic) - magic;
   const float r = (y - n * 0.693359375f) + n * 2.12194440e-4f;  // Cody and Waite
-  float p = 1.9875691500e-4f;                                    // minimax on [-ln2/2, ln2/2]
+  float p = 1.9875691500e-4f;                                   // minimax on [-ln2/2, ln2/2]
   p = p * r + 1.3981999507e-3f;
   p = p * r + 8.3334519073e-3f;
   p = p * r + 4.1665795894e-2f;
@@ -99,7 +99,8 @@ inline void sincos2Pi<float>(float u, float& s, float& c) {
   const float t = (u - 0.25f * q) * (2 * kPi<float>);
   const float t2 = t * t;
   const float sp = t + t * t2 * (-1.6666654611e-1f + t2 * (8.3321608736e-3f - t2 * 1.9515295891e-4f));
-  const float cp = 1.0f - 0.5f * t2 + t2 * t2 * (4.166664568298827e-2f + t2 * (-1.388731625493765e-3f + t2 * 2.443315711809948e-5f));
+  const float cp =
+      1.0f - 0.5f * t2 + t2 * t2 * (4.166664568298827e-2f + t2 * (-1.388731625493765e-3f + t2 * 2.443315711809948e-5f));
   const int i = static_cast<int>(q);
   const bool swap = (i & 1) != 0;
   const float ss = swap ? cp : sp;

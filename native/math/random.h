@@ -39,7 +39,8 @@ constexpr uint32_t reverseBits(uint32_t x) {
 #endif
 }
 
-// Owen's nested uniform scramble of a number given with its bits reversed (Laine and Karras 2011, constants of Vegdahl 2021).
+// Owen's nested uniform scramble of a number given with its bits reversed (Laine and Karras 2011, constants of Vegdahl
+// 2021).
 constexpr uint32_t owenScrambleReversed(uint32_t x, uint32_t seed) {
   x ^= x * 0x3d20adeau;
   x += seed;
@@ -67,7 +68,9 @@ class Sampler {
  public:
   // block: number of points that the stratified sampler spreads over its strata (the expected count of one use).
   Sampler(SamplerType type, uint64_t seed, uint32_t block)
-      : type_(type), seed_(mix(static_cast<uint32_t>(seed)) ^ mix(static_cast<uint32_t>(seed >> 32) + 0x9e3779b9u)), block_(block < 1 ? 1 : block) {
+      : type_(type),
+        seed_(mix(static_cast<uint32_t>(seed)) ^ mix(static_cast<uint32_t>(seed >> 32) + 0x9e3779b9u)),
+        block_(block < 1 ? 1 : block) {
     columns_ = static_cast<uint32_t>(std::sqrt(static_cast<double>(block_)));
     rows_ = (block_ + columns_ - 1) / columns_;
   }
@@ -102,8 +105,8 @@ class Sampler {
     return inCell(cell, jitter, block_);
   }
 
-  // A random permutation of 0..n-1, evaluated at i (Kensler 2013, "Correlated multi-jittered sampling", listing 3; there
-  // i + p may pass 2^32, and then two images coincide).
+  // A random permutation of 0..n-1, evaluated at i (Kensler 2013, "Correlated multi-jittered sampling", listing 3;
+  // there i + p may pass 2^32, and then two images coincide).
   static uint32_t permute(uint32_t i, uint32_t n, uint32_t p) {
     uint32_t w = n - 1;
     w |= w >> 1;

@@ -77,8 +77,8 @@ struct Frame {
     const T b = n.x * n.y * a;
     return {{T(1) + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
   }
-  // Basis around n whose x axis is the part of `tangent` orthogonal to n; any basis where that vanishes (within rounding:
-  // a thousandth of the tangent, whatever its length).
+  // Basis around n whose x axis is the part of `tangent` orthogonal to n; any basis where that vanishes (within
+  // rounding: a thousandth of the tangent, whatever its length).
   static Frame around(Vec3<T> n, Vec3<T> tangent) {
     const Vec3<T> t = tangent - n * dot(n, tangent);
     const T l2 = dot(t, t);

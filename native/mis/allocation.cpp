@@ -55,7 +55,8 @@ Fractions combineSplit(const Fractions& specular, const Fractions& diffuse) {
   return a;
 }
 
-Fractions allocateSplit(AllocationRule rule, const Moments& specular, const Moments& diffuse, TechniqueMask available, float minimum) {
+Fractions allocateSplit(AllocationRule rule, const Moments& specular, const Moments& diffuse, TechniqueMask available,
+                        float minimum) {
   const auto one = [&](const Moments& m, Technique own, TechniqueMask used) {
     return (available & maskOf(own)) != 0 ? allocate(rule, m, available & used, minimum) : Fractions{};
   };

@@ -19,7 +19,7 @@ enum class AllocationRule : uint8_t {
   kEqual,         // Def. 7: n_i = N/n
   kVariance,      // Def. 8: n_i proportional to sigma^2_i,eq
   kSecondMoment,  // Def. 9: n_i proportional to 1/m^2_i
-  kAlbedo,        // half to the light, half to the lobes by albedo: the usual path tracer's one BSDF and one light sample
+  kAlbedo,  // half to the light, half to the lobes by albedo: the usual path tracer's one BSDF and one light sample
 };
 enum class WeightRule : uint8_t { kBalance, kNonbalance, kPower };
 enum class Integrand : uint8_t { kSplit, kJoint };
@@ -38,15 +38,17 @@ constexpr bool needsMoments(AllocationRule rule) {
 Fractions allocate(AllocationRule rule, const Moments& m, TechniqueMask used, float minimum);
 
 // Fractions of a hit with two integrands, each with the same budget and its own fractions of it: lobe and light for the
-// specular one, cosine and light for the diffuse one. Light samples serve both, so the larger of the two demands is drawn,
-// and what that saves goes to all in proportion. Each integrand has at least the samples that it asked for.
+// specular one, cosine and light for the diffuse one. Light samples serve both, so the larger of the two demands is
+// drawn, and what that saves goes to all in proportion. Each integrand has at least the samples that it asked for.
 Fractions combineSplit(const Fractions& specular, const Fractions& diffuse);
 
-// The fractions of split integrands, of the techniques `available`; an integrand without its own technique asks for nothing.
-Fractions allocateSplit(AllocationRule rule, const Moments& specular, const Moments& diffuse, TechniqueMask available, float minimum);
+// The fractions of split integrands, of the techniques `available`; an integrand without its own technique asks for
+// nothing.
+Fractions allocateSplit(AllocationRule rule, const Moments& specular, const Moments& diffuse, TechniqueMask available,
+                        float minimum);
 
-// Whether every technique of `available` gets samples. A hit that has more techniques than its pixel's fractions know of (at
-// an edge) must not use them: light that only the missing one finds would be lost.
+// Whether every technique of `available` gets samples. A hit that has more techniques than its pixel's fractions know
+// of (at an edge) must not use them: light that only the missing one finds would be lost.
 constexpr bool covers(const Fractions& a, TechniqueMask available) {
   for (int i = 0; i < kTechniques; ++i)
     if ((available >> i & 1u) != 0 && !(a[i] > 0)) return false;

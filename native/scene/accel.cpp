@@ -85,8 +85,10 @@ struct Accel::Impl {
 
   RTCGeometry triangles(const Shape& s) {
     RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, s.positions, 0, sizeof(Vec3f), s.vertices);
-    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, s.indices, 0, 3 * sizeof(uint32_t), s.triangles);
+    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, s.positions, 0, sizeof(Vec3f),
+                               s.vertices);
+    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, s.indices, 0, 3 * sizeof(uint32_t),
+                               s.triangles);
     return g;
   }
   void finish(RTCGeometry g, bool filtered) {
@@ -112,7 +114,8 @@ struct Accel::Impl {
     const RTCError e = rtcGetDeviceError(device);
     if (e == RTC_ERROR_NONE) return;
     if (e == RTC_ERROR_OUT_OF_MEMORY)
-      throw Error(ExitCode::kMemory, fmt::format("not enough memory while {}", doing), "close other programs, or simplify the scene");
+      throw Error(ExitCode::kMemory, fmt::format("not enough memory while {}", doing),
+                  "close other programs, or simplify the scene");
     throw Error(ExitCode::kScene, fmt::format("Embree failed while {} (code {})", doing, static_cast<int>(e)));
   }
 };

@@ -18,8 +18,8 @@ struct Ray {
 
 struct Hit {
   float t = 3.4e38f;
-  float u = 0, v = 0;         // barycentric weights of the second and third vertex
-  Vec3f normal{0, 0, 0};      // geometric, not normalised; space of the shape (world if the placement is flat)
+  float u = 0, v = 0;     // barycentric weights of the second and third vertex
+  Vec3f normal{0, 0, 0};  // geometric, not normalised; space of the shape (world if the placement is flat)
   uint32_t placement = ~0u, shape = ~0u, triangle = 0;
 
   bool valid() const { return placement != ~0u; }

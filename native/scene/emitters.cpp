@@ -141,7 +141,8 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const Environment& en
       shape.emitterOffset = offset;
       offset += shape.triangles;
       for (uint32_t t = 0; t < shape.triangles; ++t) {
-        const Vec3f a = geometry.corner(placement, shape, t, 0), b = geometry.corner(placement, shape, t, 1), c = geometry.corner(placement, shape, t, 2);
+        const Vec3f a = geometry.corner(placement, shape, t, 0), b = geometry.corner(placement, shape, t, 1),
+                    c = geometry.corner(placement, shape, t, 2);
         const double w = 2 * kPif * 0.5 * length(cross(b - a, c - a)) * luminance(meanEmission(scene, shape, t));
         emissive_.push_back({p, s, t});
         power.push_back(std::isfinite(w) && w > 0 ? w : 0.0);
@@ -227,7 +228,8 @@ LightSample Emitters::sample(Vec3f from, Vec2f u) const {
     const Triangle& e = emissive_[index - lamps_.size()];
     const Placement& p = geometry_.placements[e.placement];
     const Shape& shape = geometry_.shapes[e.shape];
-    const Vec3f a = geometry_.corner(p, shape, e.triangle, 0), ab = geometry_.corner(p, shape, e.triangle, 1) - a, ac = geometry_.corner(p, shape, e.triangle, 2) - a;
+    const Vec3f a = geometry_.corner(p, shape, e.triangle, 0), ab = geometry_.corner(p, shape, e.triangle, 1) - a,
+                ac = geometry_.corner(p, shape, e.triangle, 2) - a;
     const Vec2f b = toTriangle(u);
     const Vec3f to = (a - from) + ab * b.x + ac * b.y;
     const Vec3f n = cross(ab, ac);  // twice the area
@@ -244,7 +246,8 @@ LightSample Emitters::sample(Vec3f from, Vec2f u) const {
       const uint32_t* i = shape.indices + 3 * size_t{e.triangle};
       const Vec2f t0 = shape.part->uvs[i[0]], t1 = shape.part->uvs[i[1]], t2uv = shape.part->uvs[i[2]];
       const float c = 1 - b.x - b.y;
-      s.radiance *= sampleRgb(scene_, emission.texture, {c * t0.x + b.x * t1.x + b.y * t2uv.x, c * t0.y + b.x * t1.y + b.y * t2uv.y});
+      s.radiance *= sampleRgb(scene_, emission.texture,
+                              {c * t0.x + b.x * t1.x + b.y * t2uv.x, c * t0.y + b.x * t1.y + b.y * t2uv.y});
     }
     s.visibility = p.visibility;
     return s;
@@ -252,7 +255,9 @@ LightSample Emitters::sample(Vec3f from, Vec2f u) const {
 
   const Lamp& lamp = lamps_[index];
   switch (lamp.kind) {
-    case Kind::kRectangle: s = sampleRectangle(lamp, from, u); break;
+    case Kind::kRectangle:
+      s = sampleRectangle(lamp, from, u);
+      break;
     case Kind::kEllipse: {
       const Vec2f d = toDisk(u);
       const Vec3f to = lamp.center + lamp.halfX * d.x + lamp.halfY * d.y - from;
@@ -347,7 +352,8 @@ bool Emitters::meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax,
       const float n2 = dot(n, n);
       const float a = dot(cross(p, lamp.halfY), n) / n2, b = dot(cross(lamp.halfX, p), n) / n2;
       if (lamp.kind == Kind::kRectangle ? std::max(std::abs(a), std::abs(b)) > 1 : a * a + b * b > 1) return false;
-      pdf = lamp.kind == Kind::kRectangle ? pdfRectangle(lamp, ray.origin, t, cosLight) : t * t / (cosLight * lamp.area);
+      pdf =
+          lamp.kind == Kind::kRectangle ? pdfRectangle(lamp, ray.origin, t, cosLight) : t * t / (cosLight * lamp.area);
       hit.radiance = profile(lamp, -d);
       break;
     }
@@ -391,7 +397,8 @@ bool Emitters::meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax,
       hit.radiance = environment_.radiance(d);
       break;
     case Kind::kDeltaPoint:
-    case Kind::kDeltaSun: return false;
+    case Kind::kDeltaSun:
+      return false;
   }
   hit.pdf = pdf > 0 ? pdf * probability(index) : 0;
   hit.visibility = lamp.visibility;
@@ -400,7 +407,8 @@ bool Emitters::meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax,
 
 float Emitters::trianglePdf(const Placement& p, const Hit& hit, Vec3f direction) const {
   const Shape& shape = geometry_.shapes[hit.shape];
-  const Vec3f a = geometry_.corner(p, shape, hit.triangle, 0), b = geometry_.corner(p, shape, hit.triangle, 1), c = geometry_.corner(p, shape, hit.triangle, 2);
+  const Vec3f a = geometry_.corner(p, shape, hit.triangle, 0), b = geometry_.corner(p, shape, hit.triangle, 1),
+              c = geometry_.corner(p, shape, hit.triangle, 2);
   const float cosArea = std::abs(dot(direction, cross(b - a, c - a))) * 0.5f;
   if (!(cosArea > 0)) return 0;
   return probability(lamps_.size() + p.firstEmitter + shape.emitterOffset + hit.triangle) * hit.t * hit.t / cosArea;

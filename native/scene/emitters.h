@@ -15,9 +15,10 @@ struct LightSample {
   Vec3f direction{0, 0, 0};  // unit
   float distance = 0;        // to the emitter; 3e38 for the infinitely far
   Rgb radiance{0, 0, 0};     // arriving, without occlusion; of a delta light: irradiance facing it
-  float pdf = 0;             // per solid angle, the choice of the emitter included; of a delta light: of the choice; 0: nothing arrives
-  bool exclusive = false;    // no other technique meets this emitter: a delta light, or one without shadows
-  bool shadow = true;        // occluders count
+  float pdf =
+      0;  // per solid angle, the choice of the emitter included; of a delta light: of the choice; 0: nothing arrives
+  bool exclusive = false;  // no other technique meets this emitter: a delta light, or one without shadows
+  bool shadow = true;      // occluders count
   uint8_t visibility = kSeenByAll;
 };
 
@@ -34,7 +35,8 @@ class Emitters {
   Emitters(const Scene& scene, Geometry& geometry, const Environment& environment);
 
   bool any() const { return !table_.empty(); }
-  // Emitters that the surface's techniques meet too, and emitters that they cannot (delta lights, lights without shadows).
+  // Emitters that the surface's techniques meet too, and emitters that they cannot (delta lights, lights without
+  // shadows).
   bool anyShared() const { return shared_; }
   bool anyExclusive() const { return exclusive_; }
   uint64_t emissiveTriangles() const { return triangles_; }
@@ -50,15 +52,24 @@ class Emitters {
   float trianglePdf(const Placement& p, const Hit& hit, Vec3f direction) const;
 
  private:
-  enum class Kind : uint8_t { kRectangle, kEllipse, kFacingDisk, kSphere, kDeltaPoint, kDeltaSun, kSunCone, kEnvironment };
+  enum class Kind : uint8_t {
+    kRectangle,
+    kEllipse,
+    kFacingDisk,
+    kSphere,
+    kDeltaPoint,
+    kDeltaSun,
+    kSunCone,
+    kEnvironment
+  };
   struct Lamp {
     Kind kind;
-    Vec3f center{};            // or, for suns, the direction towards it
-    Vec3f halfX{}, halfY{};    // rectangle, ellipse: half axes
-    Vec3f normal{};            // rectangle, ellipse: unit
+    Vec3f center{};          // or, for suns, the direction towards it
+    Vec3f halfX{}, halfY{};  // rectangle, ellipse: half axes
+    Vec3f normal{};          // rectangle, ellipse: unit
     float area = 0, radius = 0;
-    float oneMinusCos = 0;     // sun: 1 - cos of the half angle
-    Rgb emitted{};             // radiance; point intensity; sun irradiance
+    float oneMinusCos = 0;  // sun: 1 - cos of the half angle
+    Rgb emitted{};          // radiance; point intensity; sun irradiance
     // angular profile
     float spreadTan = 0, spreadHalf = 0;  // spread < pi
     bool spread = false, spot = false, cosine = false;
@@ -82,8 +93,8 @@ class Emitters {
   struct Triangle {
     uint32_t placement, shape, triangle;
   };
-  std::vector<Triangle> emissive_;  // emitters lamps_.size() ...
-  AliasTable table_;                // over lamps, then emissive triangles
+  std::vector<Triangle> emissive_;           // emitters lamps_.size() ...
+  AliasTable table_;                         // over lamps, then emissive triangles
   std::vector<uint32_t> finite_, infinite_;  // indices of the lamps that a ray can meet
   bool shared_ = false, exclusive_ = false;
   uint64_t triangles_ = 0;

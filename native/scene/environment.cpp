@@ -45,7 +45,8 @@ Environment::Environment(const Scene& scene) : scene_(scene) {
   width_ = std::min(image.width, kMaxTableWidth), height_ = std::min(image.height, kMaxTableHeight);
   const int subX = (image.width + width_ - 1) / width_ * 2, subY = (image.height + height_ - 1) / height_ * 2;
   bandCos_.resize(static_cast<size_t>(height_) + 1);
-  for (int y = 0; y <= height_; ++y) bandCos_[static_cast<size_t>(y)] = -std::cos(kPi<float> * static_cast<float>(y) / static_cast<float>(height_));
+  for (int y = 0; y <= height_; ++y)
+    bandCos_[static_cast<size_t>(y)] = -std::cos(kPi<float> * static_cast<float>(y) / static_cast<float>(height_));
   std::vector<double> weights(static_cast<size_t>(width_) * static_cast<size_t>(height_));
   TextureUse use;
   use.texture = world.texture;
@@ -55,8 +56,10 @@ Environment::Environment(const Scene& scene) : scene_(scene) {
       double sum = 0;
       for (int j = 0; j <= subY; ++j)
         for (int i = 0; i <= subX; ++i) {
-          const float u = (static_cast<float>(x) + (static_cast<float>(i)) / static_cast<float>(subX)) / static_cast<float>(width_);
-          const float v = (static_cast<float>(y) + (static_cast<float>(j)) / static_cast<float>(subY)) / static_cast<float>(height_);
+          const float u =
+              (static_cast<float>(x) + (static_cast<float>(i)) / static_cast<float>(subX)) / static_cast<float>(width_);
+          const float v = (static_cast<float>(y) + (static_cast<float>(j)) / static_cast<float>(subY)) /
+                          static_cast<float>(height_);
           sum += std::max(0.0f, luminance(sampleRgb(scene, use, {u, v}) * world.radiance));
         }
       weights[static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x)] =
@@ -71,12 +74,14 @@ Environment::Environment(const Scene& scene) : scene_(scene) {
 Vec3f Environment::toImage(Vec3f d) const {
   const Vec3f z = scene_.zUp ? Vec3f{d.x, -d.z, d.y} : d;
   const float* m = scene_.world.matrix;
-  return normalize(Vec3f{m[0] * z.x + m[1] * z.y + m[2] * z.z, m[3] * z.x + m[4] * z.y + m[5] * z.z, m[6] * z.x + m[7] * z.y + m[8] * z.z});
+  return normalize(Vec3f{m[0] * z.x + m[1] * z.y + m[2] * z.z, m[3] * z.x + m[4] * z.y + m[5] * z.z,
+                         m[6] * z.x + m[7] * z.y + m[8] * z.z});
 }
 
 Vec3f Environment::fromImage(Vec3f d) const {
   const float* m = inverse_;
-  const Vec3f z = normalize(Vec3f{m[0] * d.x + m[1] * d.y + m[2] * d.z, m[3] * d.x + m[4] * d.y + m[5] * d.z, m[6] * d.x + m[7] * d.y + m[8] * d.z});
+  const Vec3f z = normalize(Vec3f{m[0] * d.x + m[1] * d.y + m[2] * d.z, m[3] * d.x + m[4] * d.y + m[5] * d.z,
+                                  m[6] * d.x + m[7] * d.y + m[8] * d.z});
   return scene_.zUp ? Vec3f{z.x, z.z, -z.y} : z;
 }
 

@@ -24,7 +24,7 @@ class Environment {
   float pdf(Vec3f direction) const;
 
  private:
-  Vec3f toImage(Vec3f world) const;    // world -> the image's Z-up frame
+  Vec3f toImage(Vec3f world) const;  // world -> the image's Z-up frame
   Vec3f fromImage(Vec3f image) const;
 
   const Scene& scene_;

@@ -11,7 +11,7 @@
 namespace wardmis {
 
 struct Shape {
-  const MeshPart* part = nullptr;  // normals and uvs, in the mesh's space
+  const MeshPart* part = nullptr;    // normals and uvs, in the mesh's space
   const Vec3f* positions = nullptr;  // world space if the placement is flat, else the mesh's
   size_t vertices = 0;
   const uint32_t* indices = nullptr;
@@ -26,16 +26,16 @@ struct Placement {
   uint32_t firstShape = 0, shapes = 0;  // into Geometry::shapes
   bool flat = false;                    // shapes' positions are in world space already
   uint8_t visibility = kSeenByAll;
-  uint32_t firstEmitter = 0;            // of its emissive triangles
+  uint32_t firstEmitter = 0;  // of its emissive triangles
   const std::string* name = nullptr;
 };
 
 struct Geometry {
   std::vector<Shape> shapes;
   std::vector<Placement> placements;
-  std::vector<std::vector<Vec3f>> positions;       // of all shapes, each padded by one vertex
-  uint64_t triangles = 0;                          // placed, instances counted
-  Vec3f lower{0, 0, 0}, upper{0, 0, 0};            // bounds, world space
+  std::vector<std::vector<Vec3f>> positions;  // of all shapes, each padded by one vertex
+  uint64_t triangles = 0;                     // placed, instances counted
+  Vec3f lower{0, 0, 0}, upper{0, 0, 0};       // bounds, world space
 
   explicit Geometry(const Scene& scene);
   Vec3f center() const { return (lower + upper) * 0.5f; }

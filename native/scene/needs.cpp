@@ -51,17 +51,20 @@ std::vector<std::string> leftOut(const Scene& scene, uint32_t n, const Emitters&
   if ((n & kNeedsLightSampling) == 0)
     out.emplace_back("nothing emits but the sky: no light samples, nothing to allocate, no pilot");
   else if ((n & kNeedsAllocation) == 0)
-    out.emplace_back(emitters.anyShared() ? "nothing reflects: nothing to allocate, no pilot"
-                                          : "only lights without area: only light samples reach them, nothing to allocate, no pilot");
+    out.emplace_back(emitters.anyShared()
+                         ? "nothing reflects: nothing to allocate, no pilot"
+                         : "only lights without area: only light samples reach them, nothing to allocate, no pilot");
   if (emitters.emissiveTriangles() == 0) out.emplace_back("no emissive mesh: no emissive triangles listed");
   return out;
 }
 
 std::string describe(uint32_t n) {
   constexpr std::pair<uint32_t, const char*> kNames[] = {
-      {kNeedsDiffuse, "diffuse"},           {kNeedsSpecular, "specular"},       {kNeedsTextures, "textures"},
-      {kNeedsBounces, "bounces"},           {kNeedsLightSampling, "lights"},    {kNeedsAllocation, "allocation"},
-      {kNeedsEnvironment, "environment"},   {kNeedsLens, "lens"},               {kNeedsTangents, "tangents"}};
+      {kNeedsDiffuse, "diffuse"},         {kNeedsSpecular, "specular"},
+      {kNeedsTextures, "textures"},       {kNeedsBounces, "bounces"},
+      {kNeedsLightSampling, "lights"},    {kNeedsAllocation, "allocation"},
+      {kNeedsEnvironment, "environment"}, {kNeedsLens, "lens"},
+      {kNeedsTangents, "tangents"}};
   std::string s;
   for (const auto& [bit, text] : kNames)
     if ((n & bit) != 0) s += (s.empty() ? "" : ", ") + std::string(text);

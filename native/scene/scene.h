@@ -64,7 +64,6 @@ struct ScalarInput {
   TextureUse texture;
 };
 
-
 struct Material {
   std::string name;
   WardVariant variant = WardVariant::kWardGmd;
@@ -97,7 +96,13 @@ struct Mesh {
 };
 
 // Kinds of ray that see an object or a light. Bits.
-enum Visibility : uint8_t { kSeenByCamera = 1, kSeenByDiffuse = 2, kSeenByGlossy = 4, kCastsShadow = 8, kSeenByAll = 15 };
+enum Visibility : uint8_t {
+  kSeenByCamera = 1,
+  kSeenByDiffuse = 2,
+  kSeenByGlossy = 4,
+  kCastsShadow = 8,
+  kSeenByAll = 15
+};
 
 struct Instance {
   std::string name;
@@ -111,7 +116,7 @@ enum class LightType : uint8_t { kArea, kPoint, kSpot, kSun };
 struct Light {
   std::string name;
   LightType type = LightType::kPoint;
-  Affine toWorld;  // -z is where it looks
+  Affine toWorld;        // -z is where it looks
   Rgb emitted{1, 1, 1};  // color times: area W m^-2 sr^-1, point and spot W sr^-1, sun W m^-2
   // area
   bool ellipse = false;
@@ -138,10 +143,9 @@ struct Camera {
   float bladeRotation = 0, bladeRatio = 1;
 };
 
-
 struct Film {
-  int width = 960, height = 540;                 // full frame
-  int x0 = 0, y0 = 0, x1 = 960, y1 = 540;        // border, from the bottom left, end exclusive
+  int width = 960, height = 540;           // full frame
+  int x0 = 0, y0 = 0, x1 = 960, y1 = 540;  // border, from the bottom left, end exclusive
   FilterType filter = FilterType::kBlackmanHarris;
   float filterWidth = 1.5f;
   float exposure = 1;
@@ -166,7 +170,7 @@ struct Scene {
   Film film;
   bool hasFilm = false;  // the file gave a resolution
   World world;
-  bool zUp = false;  // frame of the Normal pass and of the world
+  bool zUp = false;                  // frame of the Normal pass and of the world
   std::vector<std::string> notes;    // from the exporter: what it could not translate
   std::vector<std::string> leftOut;  // what the reader did not load, and why
   uint64_t degenerateTriangles = 0;  // dropped

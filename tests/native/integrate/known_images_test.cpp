@@ -20,8 +20,8 @@ RenderSettings settings(uint32_t spp, Integrator integrator = Integrator::kDirec
   return s;
 }
 
-// A convex object in a uniform sky shows its albedo times the sky's radiance, whatever the integrator. Flat faces: under
-// interpolated normals some samples point into the facet, and are rightly lost.
+// A convex object in a uniform sky shows its albedo times the sky's radiance, whatever the integrator. Flat faces:
+// under interpolated normals some samples point into the facet, and are rightly lost.
 TEST(Furnace, DiffuseSphereShowsItsAlbedo) {
   for (Integrator integrator : {Integrator::kDirect, Integrator::kPath}) {
     Scene scene;
@@ -40,14 +40,17 @@ TEST(Furnace, GmdPatchShowsItsAlbedo) {
   for (const auto& c : golden()["albedo"]) {
     const double ax = c["alpha_x"], ay = c["alpha_y"], theta = c["theta_o_deg"];
     if (ax != ay || ax < 0.05 || theta > 85) continue;
-    for (const auto& [variant, name] : {std::pair{WardVariant::kWard, "ward"}, {WardVariant::kWardDur, "ward-dur"}, {WardVariant::kWardGmd, "ward-gmd"}}) {
+    for (const auto& [variant, name] : {std::pair{WardVariant::kWard, "ward"},
+                                        {WardVariant::kWardDur, "ward-dur"},
+                                        {WardVariant::kWardGmd, "ward-gmd"}}) {
       Scene scene;
       scene.materials = {ward({0, 0, 0}, {1, 1, 1}, static_cast<float>(ax), variant)};
       addPlane(scene, 100, 0);
       scene.world.radiance = {1, 1, 1};
       lookFrom(scene, static_cast<float>(theta * kPid / 180), 0.1f, 16);
       const Measured m = measure(renderScene(scene, settings(256)));
-      EXPECT_NEAR(m.mean, c[name].get<double>(), 5 * m.error + 1e-3 * c[name].get<double>()) << name << ' ' << ax << ' ' << theta;
+      EXPECT_NEAR(m.mean, c[name].get<double>(), 5 * m.error + 1e-3 * c[name].get<double>())
+          << name << ' ' << ax << ' ' << theta;
     }
   }
 }
@@ -152,7 +155,9 @@ TEST(Irradiance, Sun) {
 // Form factor of a rectangle parallel to the plane, corner over the point, sides a and b at height h.
 double cornerFactor(double a, double b, double h) {
   const double x = a / h, y = b / h;
-  return 1 / (2 * kPid) * (x / std::sqrt(1 + x * x) * std::atan(y / std::sqrt(1 + x * x)) + y / std::sqrt(1 + y * y) * std::atan(x / std::sqrt(1 + y * y)));
+  return 1 / (2 * kPid) *
+         (x / std::sqrt(1 + x * x) * std::atan(y / std::sqrt(1 + x * x)) +
+          y / std::sqrt(1 + y * y) * std::atan(x / std::sqrt(1 + y * y)));
 }
 
 TEST(Irradiance, Rectangle) {
@@ -191,8 +196,9 @@ TEST(Irradiance, EmissiveMesh) {
   EXPECT_NEAR(radiance(scene) / (2 * 4 * cornerFactor(1, 1, 1.5)), 1, 3e-3);
 }
 
-// The paper's setting in the renderer: a flat Ward patch under L = cos(theta), all allocations, split and joint, against
-// the golden file's L_o. |z| < 4 with 120 comparisons: one false alarm in 130 runs of other seeds; the seed is fixed.
+// The paper's setting in the renderer: a flat Ward patch under L = cos(theta), all allocations, split and joint,
+// against the golden file's L_o. |z| < 4 with 120 comparisons: one false alarm in 130 runs of other seeds; the seed is
+// fixed.
 TEST(WardPatch, AgreesWithQuadrature) {
   int checked = 0;
   for (const auto& c : golden()["estimator_cases"]) {
@@ -201,7 +207,9 @@ TEST(WardPatch, AgreesWithQuadrature) {
     const double alpha = in["alpha"], theta = in["theta_o_deg"];
     if (theta > 89.5) continue;
     const std::string model = in["model"];
-    const WardVariant variant = model == "ward" ? WardVariant::kWard : model == "ward-dur" ? WardVariant::kWardDur : WardVariant::kWardGmd;
+    const WardVariant variant = model == "ward"       ? WardVariant::kWard
+                                : model == "ward-dur" ? WardVariant::kWardDur
+                                                      : WardVariant::kWardGmd;
     Scene scene;
     const float rd = 0.3f, rs = in["rho_s"];
     scene.materials = {ward({rd, rd, rd}, {rs, rs, rs}, static_cast<float>(alpha), variant)};
@@ -210,9 +218,11 @@ TEST(WardPatch, AgreesWithQuadrature) {
     lookFrom(scene, static_cast<float>(theta * kPid / 180), 0.1f, 16);
     const double integrand0 = c["expect"]["L_o_integrand"].get<double>() / in["R"].get<double>();
     const double diffuse = 2.0 / 3 * double(rd);
-    const double want = in.value("joint", false) ? integrand0 : integrand0 + diffuse;  // joint cases have rho_d = 0.3 inside
+    const double want =
+        in.value("joint", false) ? integrand0 : integrand0 + diffuse;  // joint cases have rho_d = 0.3 inside
     for (Integrand integrand : {Integrand::kSplit, Integrand::kJoint})
-      for (AllocationRule rule : {AllocationRule::kEqual, AllocationRule::kVariance, AllocationRule::kSecondMoment, AllocationRule::kAlbedo}) {
+      for (AllocationRule rule : {AllocationRule::kEqual, AllocationRule::kVariance, AllocationRule::kSecondMoment,
+                                  AllocationRule::kAlbedo}) {
         RenderSettings s = settings(32);
         s.allocation = rule;
         s.integrand = integrand;
@@ -221,7 +231,9 @@ TEST(WardPatch, AgreesWithQuadrature) {
         s.seed = 3;
         const Measured m = measure(renderScene(scene, s));
         // the sky is interpolated from 512 rows: 1e-5
-        EXPECT_LT(std::abs(m.mean - want), 4 * m.error + 2e-5 * want) << model << ' ' << alpha << ' ' << theta << ' ' << name(integrand) << ' ' << name(rule) << " got " << m.mean << " +- " << m.error << " want " << want;
+        EXPECT_LT(std::abs(m.mean - want), 4 * m.error + 2e-5 * want)
+            << model << ' ' << alpha << ' ' << theta << ' ' << name(integrand) << ' ' << name(rule) << " got " << m.mean
+            << " +- " << m.error << " want " << want;
         ++checked;
       }
   }

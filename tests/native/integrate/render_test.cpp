@@ -16,7 +16,8 @@ using namespace test;
 // Two plates under a sky image, a rectangle, a point and an emissive square: every part of the renderer.
 Scene mixedScene(int resolution = 24) {
   Scene scene;
-  scene.materials = {ward({0.4f, 0.3f, 0.2f}, {0.3f, 0.3f, 0.3f}, 0.15f, WardVariant::kWardGmd), ward({0.5f, 0.5f, 0.5f}, {0, 0, 0}, 0.1f, WardVariant::kWard)};
+  scene.materials = {ward({0.4f, 0.3f, 0.2f}, {0.3f, 0.3f, 0.3f}, 0.15f, WardVariant::kWardGmd),
+                     ward({0.5f, 0.5f, 0.5f}, {0, 0, 0}, 0.1f, WardVariant::kWard)};
   Material lamp;
   lamp.emission.value = {3, 2, 1};
   scene.materials.push_back(lamp);
@@ -40,7 +41,9 @@ Scene mixedScene(int resolution = 24) {
 bool same(const FilmBuffer& a, const FilmBuffer& b) {
   if (a.samples != b.samples || a.pixels.size() != b.pixels.size()) return false;
   for (size_t i = 0; i < a.pixels.size(); ++i)
-    if (a.pixels[i].sum != b.pixels[i].sum || a.pixels[i].techniques != b.pixels[i].techniques || !(a.pixels[i].normal == b.pixels[i].normal)) return false;
+    if (a.pixels[i].sum != b.pixels[i].sum || a.pixels[i].techniques != b.pixels[i].techniques ||
+        !(a.pixels[i].normal == b.pixels[i].normal))
+      return false;
   return true;
 }
 
@@ -54,7 +57,8 @@ RenderSettings quick() {
 TEST(Render, DoesNotDependOnThreads) {
   const Scene scene = mixedScene();
   for (SamplerType sampler : {SamplerType::kIndependent, SamplerType::kStratified, SamplerType::kSobol})
-    for (AllocationRule rule : {AllocationRule::kEqual, AllocationRule::kVariance, AllocationRule::kSecondMoment, AllocationRule::kAlbedo}) {
+    for (AllocationRule rule :
+         {AllocationRule::kEqual, AllocationRule::kVariance, AllocationRule::kSecondMoment, AllocationRule::kAlbedo}) {
       RenderSettings s = quick();
       s.sampler = sampler;
       s.allocation = rule;
@@ -69,7 +73,8 @@ TEST(Render, DoesNotDependOnThreads) {
     }
 }
 
-// The kernel with everything compiled in gives the image of the one that the scene needs, for scenes that lack each part.
+// The kernel with everything compiled in gives the image of the one that the scene needs, for scenes that lack each
+// part.
 TEST(Render, GeneralKernelGivesTheSameImage) {
   for (int without = 0; without < 4; ++without)
     for (Integrator integrator : {Integrator::kDirect, Integrator::kPath}) {
@@ -87,7 +92,8 @@ TEST(Render, GeneralKernelGivesTheSameImage) {
       EXPECT_EQ(general.kernel, kKernelNeeds);
       if (without != 0 || integrator == Integrator::kDirect) EXPECT_NE(special.kernel, general.kernel);
       // not bit for bit: the two are compiled apart, and may round differently
-      for (size_t i = 0; i < a.pixels.size(); ++i) EXPECT_NEAR(a.mean(a.pixels[i]).x, b.mean(b.pixels[i]).x, 1e-4f * (1 + a.mean(a.pixels[i]).x)) << without;
+      for (size_t i = 0; i < a.pixels.size(); ++i)
+        EXPECT_NEAR(a.mean(a.pixels[i]).x, b.mean(b.pixels[i]).x, 1e-4f * (1 + a.mean(a.pixels[i]).x)) << without;
     }
 }
 
@@ -109,14 +115,16 @@ TEST(Render, EveryAllocationAgrees) {
   s.spp = 96;
   s.seed = 5;
   s.samplesPerHit = 5;
-  for (AllocationRule rule : {AllocationRule::kEqual, AllocationRule::kVariance, AllocationRule::kSecondMoment, AllocationRule::kAlbedo})
+  for (AllocationRule rule :
+       {AllocationRule::kEqual, AllocationRule::kVariance, AllocationRule::kSecondMoment, AllocationRule::kAlbedo})
     for (WeightRule weights : {WeightRule::kBalance, WeightRule::kNonbalance, WeightRule::kPower})
       for (Integrand integrand : {Integrand::kSplit, Integrand::kJoint}) {
         s.allocation = rule;
         s.weights = weights;
         s.integrand = integrand;
         const auto [mean, variance] = imageMean(renderScene(scene, s));
-        EXPECT_LT(std::abs(mean - reference) / std::sqrt(variance + referenceVariance), 4) << name(rule) << ' ' << name(weights) << ' ' << name(integrand) << ' ' << mean << ' ' << reference;
+        EXPECT_LT(std::abs(mean - reference) / std::sqrt(variance + referenceVariance), 4)
+            << name(rule) << ' ' << name(weights) << ' ' << name(integrand) << ' ' << mean << ' ' << reference;
       }
 }
 
@@ -124,7 +132,8 @@ TEST(Render, EveryAllocationAgrees) {
 // technique that finds a reflection's reflection. Compared over the edge's pixels, |z| < 4.
 TEST(Render, EdgesAreNotStarved) {
   Scene scene;
-  scene.materials = {ward({0.5f, 0.5f, 0.5f}, {0, 0, 0}, 0.1f, WardVariant::kWard), ward({0, 0, 0}, {0.9f, 0.9f, 0.9f}, 0.05f, WardVariant::kWardGmd)};
+  scene.materials = {ward({0.5f, 0.5f, 0.5f}, {0, 0, 0}, 0.1f, WardVariant::kWard),
+                     ward({0, 0, 0}, {0.9f, 0.9f, 0.9f}, 0.05f, WardVariant::kWardGmd)};
   // stripes narrower than a pixel
   for (int i = 0; i < 32; ++i) {
     const float x = -1 + static_cast<float>(i) / 16;
@@ -244,7 +253,8 @@ TEST(Render, InstancesAreCopies) {
   addPlane(copies, 0.5f, 2, 2);
   lookFrom(copies, 0.9f, 3, 24);
   Scene instanced = copies;
-  const Affine moves[] = {{{0.5f, 0, 0}, {0, 0.8f, 0.2f}, {0, -0.1f, 1}, {1, 1, 0}}, {{-1, 0, 0}, {0, 0.5f, 0}, {0.3f, 0, 0.7f}, {-1, -1, 0.2f}}};
+  const Affine moves[] = {{{0.5f, 0, 0}, {0, 0.8f, 0.2f}, {0, -0.1f, 1}, {1, 1, 0}},
+                          {{-1, 0, 0}, {0, 0.5f, 0}, {0.3f, 0, 0.7f}, {-1, -1, 0.2f}}};
   copies.instances.clear();
   instanced.instances.clear();
   for (const Affine& move : moves)
@@ -277,11 +287,13 @@ TEST(Render, RespectsVisibility) {
     for (const uint8_t hidden : {kSeenByCamera, kSeenByDiffuse, kCastsShadow}) {
       const auto mean = [&](bool object) {
         Scene scene;
-        scene.materials = {ward({0.5f, 0.5f, 0.5f}, {0, 0, 0}, 0.1f, WardVariant::kWard), ward({0, 0, 0}, {0, 0, 0}, 0.1f, WardVariant::kWard)};
+        scene.materials = {ward({0.5f, 0.5f, 0.5f}, {0, 0, 0}, 0.1f, WardVariant::kWard),
+                           ward({0, 0, 0}, {0, 0, 0}, 0.1f, WardVariant::kWard)};
         addPlane(scene, 50, 0);
         addPlane(scene, 20, 1, 1);  // a black lid
         if (shared) scene.instances.push_back(scene.instances.back()), scene.instances.back().toWorld.t.z = 0.5f;
-        for (size_t i = 1; i < scene.instances.size(); ++i) scene.instances[i].visibility = static_cast<uint8_t>(kSeenByAll & ~hidden);
+        for (size_t i = 1; i < scene.instances.size(); ++i)
+          scene.instances[i].visibility = static_cast<uint8_t>(kSeenByAll & ~hidden);
         if (!object) scene.instances.resize(1), scene.meshes.resize(1);
         // the sky is found by diffuse rays alone, the sun by shadow rays alone
         if (hidden == kCastsShadow) {

@@ -17,7 +17,8 @@ inline Material ward(Rgb diffuse, Rgb specular, float alpha, WardVariant variant
   return m;
 }
 
-inline void addMesh(Scene& scene, std::vector<Vec3f> positions, std::vector<uint32_t> indices, int material, std::vector<Vec3f> normals = {}) {
+inline void addMesh(Scene& scene, std::vector<Vec3f> positions, std::vector<uint32_t> indices, int material,
+                    std::vector<Vec3f> normals = {}) {
   MeshPart part;
   part.positions = Array<Vec3f>::of(std::move(positions));
   if (!normals.empty()) part.normals = Array<Vec3f>::of(std::move(normals));
@@ -31,7 +32,8 @@ inline void addMesh(Scene& scene, std::vector<Vec3f> positions, std::vector<uint
 
 // A square of the given half size in the plane z = height, facing +z.
 inline void addPlane(Scene& scene, float half, int material, float height = 0) {
-  addMesh(scene, {{-half, -half, height}, {half, -half, height}, {half, half, height}, {-half, half, height}}, {0, 1, 2, 0, 2, 3}, material);
+  addMesh(scene, {{-half, -half, height}, {half, -half, height}, {half, half, height}, {-half, half, height}},
+          {0, 1, 2, 0, 2, 3}, material);
 }
 
 // A unit sphere of triangles with exact normals.
@@ -41,7 +43,8 @@ inline void addSphere(Scene& scene, int rings, int material) {
   const int columns = 2 * rings;
   for (int r = 0; r <= rings; ++r)
     for (int c = 0; c <= columns; ++c) {
-      const float theta = kPi<float> * static_cast<float>(r) / static_cast<float>(rings), phi = 2 * kPi<float> * static_cast<float>(c) / static_cast<float>(columns);
+      const float theta = kPi<float> * static_cast<float>(r) / static_cast<float>(rings),
+                  phi = 2 * kPi<float> * static_cast<float>(c) / static_cast<float>(columns);
       p.push_back({std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)});
     }
   for (int r = 0; r < rings; ++r)

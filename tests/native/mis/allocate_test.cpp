@@ -194,7 +194,8 @@ TEST(Allocate, ExtremeMoments) {
 }
 
 // lobe : light as the specular integrand wants, cosine : light as the diffuse one.
-// Of a common budget, each integrand gets at least the half that is its own, shared as it asked; light samples serve both.
+// Of a common budget, each integrand gets at least the half that is its own, shared as it asked; light samples serve
+// both.
 TEST(CombineSplit, MeetsBothDemands) {
   Random random(4);
   for (int k = 0; k < 1000; ++k) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // libFuzzer: readGlb either reads its input or throws Error; nothing else may happen.
-//   cmake -B build-fuzz -DCMAKE_CXX_COMPILER=clang++ -DWARDMIS_FUZZ=ON -DWARDMIS_SANITIZE=ON -DWARDMIS_OIIO=OFF -DWARDMIS_TESTS=OFF
-//   cmake --build build-fuzz --target fuzz_glb
-//   build-fuzz/fuzz_glb -dict=tests/native/scene/glb.dict -max_total_time=60 /tmp/corpus tests/native/scene/corpus
+//   cmake -B build-fuzz -DCMAKE_CXX_COMPILER=clang++ -DWARDMIS_FUZZ=ON -DWARDMIS_SANITIZE=ON -DWARDMIS_OIIO=OFF
+//   -DWARDMIS_TESTS=OFF cmake --build build-fuzz --target fuzz_glb build-fuzz/fuzz_glb
+//   -dict=tests/native/scene/glb.dict -max_total_time=60 /tmp/corpus tests/native/scene/corpus
 // New seeds: WARDMIS_WRITE_CORPUS=tests/native/scene/corpus test_scene --gtest_filter=Glb.ReadsTheCorpus
 #include <cstdint>
 #include <cstring>
