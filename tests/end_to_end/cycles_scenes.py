@@ -310,8 +310,10 @@ def main():
     folder, first_seed, *names = sys.argv[sys.argv.index("--") + 1 :]
     for name in names or SCENES:
         make(name)
-        render(f"{folder}/{name}-wardmis.exr", ["render.engine=WARDMIS", f"wardmis.seed={first_seed}"])
-        for seed in range(int(first_seed), int(first_seed) + CYCLES_SEEDS):
+        # of its own for each scene: with one seed the same block would deviate in all of them
+        first = int(first_seed) + CYCLES_SEEDS * list(SCENES).index(name)
+        render(f"{folder}/{name}-wardmis.exr", ["render.engine=WARDMIS", f"wardmis.seed={first}"])
+        for seed in range(first, first + CYCLES_SEEDS):
             render(f"{folder}/{name}-cycles-{seed}.exr", ["render.engine=CYCLES", f"cycles.seed={seed}"])
 
 
