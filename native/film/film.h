@@ -16,7 +16,7 @@ struct Pixel {
   float depth = 1e10f;  // planar, of the first sample
   Vec3f normal{0, 0, 0};
   Rgb albedo{0, 0, 0};
-  std::array<float, 3> techniques{};  // samples that each technique took at first hits
+  std::array<uint32_t, 3> techniques{};  // samples that each technique took at first hits
 
   void add(Rgb v) {
     const float c[3] = {v.x, v.y, v.z};

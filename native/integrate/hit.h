@@ -68,6 +68,9 @@ struct HitPlan {
   WeightRule weights = WeightRule::kBalance;
   uint32_t pixelKey = 0, vertex = 0;
   uint32_t index = 0;  // of this visit, among the pixel's
+  // Index of each technique's first point here: consecutive over the pixel's visits, however many a visit takes, so that
+  // the sampler's points stay evenly spread under every allocation.
+  std::array<uint32_t, kTechniques> firstPoint{};
 };
 
 // A ray of a surface technique that hit something: the path may go on from there.
@@ -106,8 +109,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
   Batch<T, kMaxSamplesPerHit> batch;
   Scratch<LightSample, kMaxSamplesPerHit> light;
   const auto point = [&](Technique t, int m) {
-    const auto most = static_cast<uint32_t>(std::ceil(mixture.n[t]));  // points set aside for one visit
-    return sampler.get2D(plan.pixelKey, dimension + kLobePoint + t, plan.index * most + static_cast<uint32_t>(m));
+    return sampler.get2D(plan.pixelKey, dimension + kLobePoint + t, plan.firstPoint[t] + static_cast<uint32_t>(m));
   };
   int j = 0;
   if constexpr (kSpec)

@@ -16,8 +16,8 @@ struct PassSource {
 };
 
 Value share(const Pixel& p, Technique t) {
-  const float sum = p.techniques[0] + p.techniques[1] + p.techniques[2];
-  return {sum > 0 ? p.techniques[t] / sum : 0, 0, 0, 0};
+  const double sum = double(p.techniques[0]) + p.techniques[1] + p.techniques[2];
+  return {sum > 0 ? static_cast<float>(p.techniques[t] / sum) : 0, 0, 0, 0};
 }
 
 const std::vector<PassSource>& sources() {

@@ -55,6 +55,7 @@ Rgb followPath(const RenderScene& scene, const Sampler& sampler, uint32_t pixelK
     plan.pixelKey = pixelKey;
     plan.vertex = static_cast<uint32_t>(vertex);
     plan.index = index;
+    plan.firstPoint = {index, index, index};  // at most one of each
     Continuations more;
     sum += weight * estimate<N>(scene, sampler, x, plan, counts, nullptr, more);
     if (more.count == 0) break;

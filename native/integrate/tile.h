@@ -47,10 +47,11 @@ Rgb cameraSample(const KernelInput& in, const Ray& ray, uint32_t pixelKey, uint3
   plan.weights = in.weights;
   plan.pixelKey = pixelKey;
   plan.index = sample;
+  plan.firstPoint = pixel.techniques;
   Continuations more;
   const std::array<uint64_t, kTechniques> before = counts.samples;
   sum += estimate<N>(world, in.sampler, x, plan, counts, pilot != nullptr ? &pilot->moments : nullptr, more);
-  for (size_t i = 0; i < kTechniques; ++i) pixel.techniques[i] += static_cast<float>(counts.samples[i] - before[i]);
+  for (size_t i = 0; i < kTechniques; ++i) pixel.techniques[i] += static_cast<uint32_t>(counts.samples[i] - before[i]);
   if constexpr ((N & kNeedsBounces) != 0)
     for (int k = 0; k < more.count; ++k)
       sum += followPath<N>(world, in.sampler, pixelKey,
