@@ -11,6 +11,7 @@ from pathlib import Path
 
 import exr
 import package
+import tomllib
 from blender import ROOT
 
 # Installs the zip as a user would, renders the default scene small, and says where the renderer was found.
@@ -50,6 +51,11 @@ class Package(unittest.TestCase):
             self.assertIn(f"wardmis/{name}", names)
         for name in names:
             self.assertIsNone(re.search(r"__pycache__|\.pyc$|lib(c|m)\.so|ld-linux", name), name)
+
+    def test_the_manifest_keeps_the_limits_of_blenders_extensions(self):
+        manifest = tomllib.loads((ROOT / "addon" / "wardmis" / "blender_manifest.toml").read_text())
+        for text in (manifest["tagline"], *manifest["permissions"].values()):
+            self.assertRegex(text, r"^[^\n]{1,63}[^.\n]$")  # 64 characters at most, no full stop
 
     def test_the_renderer_finds_its_own_libraries(self):
         with tempfile.TemporaryDirectory() as folder:
