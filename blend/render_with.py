@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Renders a Blender file in the background with other settings than its own, into a multi-layer EXR:
 
-blender --background FILE.blend --python blend/render_with.py -- OUT.exr render.engine=WARDMIS wardmis.spp=64 ...
+blender --background FILE.blend --python blend/render_with.py -- OUT.exr render.engine=WARDMIS wardmis.samples=64 ...
 
 Each setting is a property of the scene and its value, as Blender's Python tooltips name it."""
 

@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstring>
 #include <filesystem>
@@ -208,6 +209,8 @@ void checkWritable(const std::string& path) {
                 "make the folder, or choose another one");
   if (std::filesystem::is_directory(path))
     throw Error(ExitCode::kFile, fmt::format("{}: is a folder", path), "name a file in it");
+  if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path))  // /dev/null would be replaced
+    throw Error(ExitCode::kFile, fmt::format("{}: is a device, not a file", path), "name a file");
   // By doing it: access() grants root what some file systems then refuse.
   const std::string probe = (folder / fmt::format(".wardmis-{}", getpid())).string();
   const int fd = open(probe.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
@@ -260,6 +263,8 @@ int run(Options& o) {
   s.integrator = pick(o.integrator, kIntegrators);
   s.sampler = pick(o.sampler, kSamplers);
   s.generalKernel = o.kernel == "general";
+  if (!std::isfinite(s.seconds) || !std::isfinite(s.minFraction) || !std::isfinite(o.previewInterval))
+    throw Error(ExitCode::kUsage, "an option's value is not a number", "give a finite one");
   choosePasses(o.passes, kAllTechniques);
   checkWritable(o.output);
   for (const std::string* path : {&o.stats, &o.preview})

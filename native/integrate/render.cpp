@@ -172,8 +172,11 @@ FilmBuffer renderInArena(const Scene& scene, const RenderSettings& settings, Sta
   if (surfaceRays && (n & kNeedsSpecular) != 0) stats.techniques |= maskOf(kLobe);
   if (surfaceRays && (n & kNeedsDiffuse) != 0) stats.techniques |= maskOf(kCosine);
   const uint32_t target = settings.seconds > 0 ? ~uint32_t{0} : settings.spp;
-  stats.allocated = needsMoments(settings.allocation) && (n & kNeedsAllocation) != 0 && settings.pilotSpp > 0 &&
-                    settings.pilotSpp < target;
+  // The pilot takes at most half of the samples; a render of one sample has none.
+  const uint32_t pilotSpp = std::min(settings.pilotSpp, target / 2);
+  stats.allocated = needsMoments(settings.allocation) && (n & kNeedsAllocation) != 0 && pilotSpp > 0;
+  if (needsMoments(settings.allocation) && (n & kNeedsAllocation) != 0 && pilotSpp == 0)
+    stats.leftOut.emplace_back("no samples for a pilot: counts are equal");
 
   const Film& film = scene.film;
   FilmBuffer buffer(film.x1 - film.x0, film.y1 - film.y0);
@@ -207,7 +210,7 @@ FilmBuffer renderInArena(const Scene& scene, const RenderSettings& settings, Sta
   std::vector<Fractions> perPixel;
   if (stats.allocated) {
     Pilot pilot(buffer.width, buffer.height);
-    run.until(settings.pilotSpp, &pilot);
+    run.until(pilotSpp, &pilot);
     if (!run.stopped()) {
       perPixel = pilot.fractions(settings.allocation, settings.integrand, available, settings.minFraction);
       input.perPixel = &perPixel;

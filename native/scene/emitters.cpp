@@ -68,7 +68,7 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const Environment& en
     l.visibility = light.visibility;
     l.shadow = light.shadow;
     l.center = light.toWorld.t;
-    const float intensity = luminance(light.emitted);
+    const double intensity = double(luminance(light.emitted));  // times an area: beyond float for the strongest
     double w = 0;
     switch (light.type) {
       case LightType::kArea: {

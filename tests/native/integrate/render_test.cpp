@@ -90,7 +90,9 @@ TEST(Render, GeneralKernelGivesTheSameImage) {
       s.generalKernel = true;
       const FilmBuffer b = renderScene(scene, s, &general);
       EXPECT_EQ(general.kernel, kKernelNeeds);
-      if (without != 0 || integrator == Integrator::kDirect) EXPECT_NE(special.kernel, general.kernel);
+      if (without != 0 || integrator == Integrator::kDirect) {
+        EXPECT_NE(special.kernel, general.kernel);
+      }
       // not bit for bit: the two are compiled apart, and may round differently
       for (size_t i = 0; i < a.pixels.size(); ++i)
         EXPECT_NEAR(a.mean(a.pixels[i]).x, b.mean(b.pixels[i]).x, 1e-4f * (1 + a.mean(a.pixels[i]).x)) << without;
@@ -210,6 +212,30 @@ TEST(Render, LeavesOutWhatIsNotNeeded) {
   EXPECT_EQ(delta.techniques, maskOf(kLight));
   EXPECT_EQ(delta.counts.cosineRays, 0);
   EXPECT_EQ(passesFor(delta.techniques).size(), 6);  // one allocation map
+}
+
+// A pilot never takes all samples; with one sample there is none, and it is said.
+TEST(Render, FewSamplesStillHaveAPilot) {
+  for (uint32_t spp : {1u, 2u, 4u}) {
+    RenderSettings s = quick();
+    s.spp = spp;
+    Statistics stats;
+    const FilmBuffer film = renderScene(mixedScene(), s, &stats);
+    EXPECT_EQ(film.samples, spp);
+    EXPECT_EQ(stats.allocated, spp > 1);
+    const bool said = std::find(stats.leftOut.begin(), stats.leftOut.end(),
+                                "no samples for a pilot: counts are equal") != stats.leftOut.end();
+    EXPECT_EQ(said, spp == 1);
+  }
+}
+
+// One light beyond reason does not switch off the sampling of the others.
+TEST(Render, AnExtremeLightLeavesTheOthers) {
+  Scene scene = mixedScene();
+  scene.lights[0].emitted = {1e38f, 1e38f, 1e38f};
+  Statistics stats;
+  renderScene(scene, quick(), &stats);
+  EXPECT_GT(stats.counts.samples[kLight], 0);
 }
 
 TEST(Render, StopsAfterSeconds) {
