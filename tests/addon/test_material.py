@@ -201,6 +201,12 @@ class NotUnderstood(MaterialCase):
         self.assertRgb(self.export().diffuse.value, MAGENTA)
         self.assertNoted("no output node")
 
+    def test_nodes_in_a_circle_are_magenta_and_named(self):
+        mix = self.node("ShaderNodeMixShader")
+        self.tree.links.new(mix.outputs[0], mix.inputs[1])
+        self.assertRgb(self.export(mix).diffuse.value, MAGENTA)
+        self.assertNoted("linked in a circle")
+
     def test_missing_images_are_magenta_and_named(self):
         diffuse = self.node("ShaderNodeBsdfDiffuse")
         texture = self.texture(None)

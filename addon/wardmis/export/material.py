@@ -35,8 +35,17 @@ FALLBACK = Surface(diffuse=constant(MISSING))
 
 
 def export_material(material: Any, context: ExportContext) -> MaterialData:
+    try:
+        return _translate(
+            material, context, _surface_of(material, context) if compat.uses_nodes(material) else _plain(material)
+        )
+    except RecursionError:  # Blender lets users link nodes in a circle; Cycles renders such a material black
+        context.note(f"{place(material.name, context)} has nodes that are linked in a circle; rendered as magenta")
+        return _translate(material, context, FALLBACK)
+
+
+def _translate(material: Any, context: ExportContext, surface: Surface) -> MaterialData:
     calc = Calculator(material.name, context)
-    surface = _surface_of(material, context) if compat.uses_nodes(material) else _plain(material)
     return MaterialData(
         material.name,
         surface.variant,
