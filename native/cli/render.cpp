@@ -11,13 +11,13 @@
 #include <csignal>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "cli/verbs.h"
+#include "film/write_file.h"
 #include "integrate/passes.h"
 #include "math/error.h"
 #include "scene/glb.h"
@@ -221,14 +221,6 @@ void checkWritable(const std::string& path) {
   unlink(probe.c_str());
 }
 
-void writeText(const std::string& path, const std::string& text) {
-  std::ofstream f(path);
-  f << text << '\n';
-  f.close();
-  if (!f)
-    throw Error(ExitCode::kFile, path + ": cannot be written", "check the folder, its permissions and the free space");
-}
-
 void useResolution(Scene& scene, const std::string& text) {
   int w = 0, h = 0;
   char rest = 0;
@@ -351,7 +343,7 @@ int run(Options& o) {
   }
   writeExr(output, image, true);
   const json stats = statisticsJson(o, scene, st, film, readSeconds, since(writeStart), since(start));
-  if (!o.stats.empty()) writeText(o.stats, stats.dump(2, ' ', false, json::error_handler_t::replace));
+  if (!o.stats.empty()) writeFile(o.stats, stats.dump(2, ' ', false, json::error_handler_t::replace) + '\n');
 
   const RareCounts& rare = st.counts.rare;
   if (rare.total() > 0)
