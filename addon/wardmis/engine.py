@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import shutil
 import tempfile
 import traceback
 from collections.abc import Iterator
@@ -90,6 +91,8 @@ class _Render:
         self.scene_path = folder / "scene.glb"
         self.image_path = folder / "image.exr"
         self.preview_path = folder / "preview.exr"
+        x0, y0, x1, y1 = border(self.scene.render, full_resolution(self.scene.render))
+        self.width, self.height = x1 - x0, y1 - y0
         self.result: Any = None
         self.notes: set[str] = set()
         self.statistics: dict[str, Any] = {}
@@ -100,11 +103,15 @@ class _Render:
             return
         if self.scene.render.use_multiview:
             raise ExportError("stereoscopy is not supported; turn it off in Output Properties > Stereoscopy")
-        binary = renderer_path()  # before the export: a missing renderer should not take long to be told
+        # before the export: what cannot work should not take long to be told
+        binary = renderer_path()
+        self._check_room_for_output(3 * self.width * self.height)
         self._export(self.scene_path)
         try:
             with Renderer([str(binary), "render", *self._arguments()]) as renderer:
                 self._follow(renderer)
+            if self.scene.render.image_settings.file_format == "OPEN_EXR_MULTILAYER":
+                self._check_room_for_output(self.image_path.stat().st_size)
             self._show(self.image_path)
         except Exception:
             if self.result is not None and not self.engine.test_break():
@@ -123,6 +130,23 @@ class _Render:
         self.engine.update_stats("", "Exporting the scene")
         for note in export_depsgraph(self.depsgraph, path, self.engine.camera_override, self.engine.test_break):
             self._warn(note)
+
+    def _check_room_for_output(self, size: int) -> None:
+        """Raises ExportError where Blender is about to save the image to a disk without room for `size` bytes.
+
+        Blender does not notice that: it would leave a truncated file and end with exit code 0.
+        """
+        if not (bpy.app.background or self.engine.is_animation):
+            return
+        folder = Path(self.depsgraph.scene.render.frame_path()).absolute().parent
+        while not folder.exists():
+            folder = folder.parent
+        free = shutil.disk_usage(folder).free
+        if free < size:
+            raise ExportError(
+                f"the disk of {folder} has {free / 1024:,.0f} KiB free, and the image wants {size / 1024:,.0f}; "
+                "make room, or choose another output"
+            )
 
     def _warn(self, message: str) -> None:
         if message not in self.notes:
@@ -163,8 +187,20 @@ class _Render:
             raise RendererError(f"the renderer ended without an image{renderer.said()}")
 
     def _handle(self, event: dict[str, Any]) -> None:
+        try:
+            self._act_on(event)
+        except (KeyError, TypeError, ValueError) as error:
+            raise RendererError(
+                f"the renderer sent what this add-on does not understand ({error!r} in {str(event)[:200]}); "
+                "use the renderer that came with the add-on"
+            ) from error
+
+    def _act_on(self, event: dict[str, Any]) -> None:
         kind = event.get("event")
-        if kind == "progress":
+        if kind == "start":
+            for note in event.get("notes", []):
+                self._warn(note)
+        elif kind == "progress":
             self._show_progress(event)
         elif kind == "preview":
             self._show(self.preview_path)
@@ -183,12 +219,13 @@ class _Render:
     def _show(self, path: Path) -> None:
         """Loads an image into the result, which begins with the first one."""
         if self.result is None:
-            x0, y0, x1, y1 = border(self.scene.render, full_resolution(self.scene.render))
-            self.result = self.engine.begin_result(0, 0, x1 - x0, y1 - y0, layer=self.layer.name)
+            self.result = self.engine.begin_result(0, 0, self.width, self.height, layer=self.layer.name)
         try:
             self.result.load_from_file(str(path))
         except RuntimeError as error:
-            raise RendererError(f"Blender cannot read the image of the renderer: {str(error).strip()}") from error
+            raise RendererError(
+                f"Blender cannot read the image of the renderer as one of {self.width} x {self.height} pixels: {str(error).strip()}"
+            ) from error
         self.engine.update_result(self.result)
 
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cctype>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
@@ -201,6 +202,12 @@ std::vector<PassInfo> choosePasses(const std::string& list, TechniqueMask techni
   return chosen;
 }
 
+bool isNamedExr(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension == ".exr";
+}
+
 // Fails early, not after the render: the folder must exist and be writable.
 void checkWritable(const std::string& path) {
   const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
@@ -258,9 +265,11 @@ int run(Options& o) {
   if (!std::isfinite(s.seconds) || !std::isfinite(s.minFraction) || !std::isfinite(o.previewInterval))
     throw Error(ExitCode::kUsage, "an option's value is not a number", "give a finite one");
   choosePasses(o.passes, kAllTechniques);
-  checkWritable(o.output);
-  for (const std::string* path : {&o.stats, &o.preview})
+  for (const std::string* path : {&o.output, &o.stats, &o.preview})
     if (!path->empty()) checkWritable(*path);
+  for (const std::string* path : {&o.output, &o.preview})
+    if (!path->empty() && !isNamedExr(*path))
+      throw Error(ExitCode::kUsage, fmt::format("{}: the image is an OpenEXR", *path), "give a name that ends in .exr");
 
   struct sigaction action {};
   action.sa_handler = onSignal;
@@ -288,6 +297,8 @@ int run(Options& o) {
   RenderObserver observer;
   observer.stop = &stopRequest;
   observer.started = [&](const Statistics& st) {
+    if ((st.needs & (kNeedsEnvironment | kNeedsLightSampling)) == 0)
+      scene.notes.emplace_back("nothing in the scene gives light, so that the image is black; add a light or a world");
     json passes = json::array();
     for (const PassInfo& p : choosePasses(o.passes, st.techniques))
       passes.push_back({{"name", p.name}, {"channels", p.channels}});

@@ -49,7 +49,7 @@ std::vector<std::string> leftOut(const Scene& scene, uint32_t n, const Emitters&
   else if (scene.world.texture < 0)
     out.emplace_back("constant environment: not aimed at, the surface's own techniques cover it evenly");
   if ((n & kNeedsLightSampling) == 0)
-    out.emplace_back("nothing emits but the sky: no light samples, nothing to allocate, no pilot");
+    out.emplace_back("no lights to aim at: no light samples, nothing to allocate, no pilot");
   else if ((n & kNeedsAllocation) == 0)
     out.emplace_back(emitters.anyShared()
                          ? "nothing reflects: nothing to allocate, no pilot"

@@ -27,6 +27,7 @@ MODES = {
     "garbage": "prints no JSON, and makes no image",
     "nothing": "says that it is done, and makes no image",
     "wrong-size": "makes an image of the wrong size",
+    "odd-event": "tells of its progress in a way of its own",
 }
 PASSES = {
     "Combined": "RGBA",
@@ -114,6 +115,8 @@ def render(options, film, mode):
     if mode == "hang":
         signal.signal(signal.SIGTERM, signal.SIG_IGN)
         time.sleep(600)
+    if mode == "odd-event":
+        say(event="progress", percent=50)
     steps = 600 if mode == "slow" else 2
     for step in range(1, steps + 1):
         time.sleep(0.1 if mode == "slow" else 0.01)

@@ -55,6 +55,14 @@ class Lights(SceneTest):
         self.assertEqual(scene.lights, [])
         self.assertIn("light 'Light': its area is zero", scene.notes[0])
 
+    def test_light_that_is_not_finite_is_an_error(self):
+        obj = self.light("POINT", color=(1, float("nan"), 1))
+        with self.assertRaisesRegex(ExportError, "light 'Light': its power or colour is not a finite number"):
+            self.gather()
+        obj.data.color, obj.data.energy = (1, 1, 1), float("inf")
+        with self.assertRaises(ExportError):
+            self.gather()
+
     def test_point_light(self):
         self.light("POINT", shadow_soft_size=0.5, color=(1, 0.5, 0.25))
         light = self.only()

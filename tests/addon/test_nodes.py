@@ -26,8 +26,8 @@ def ward_material(name="Ward"):
     return material, node
 
 
-def render_with_cycles(samples):
-    """The pixels of the scene, linear, (height, width, 4)."""
+def render_with_cycles(samples, path):
+    """The pixels of the scene, linear, (height, width, 4). Writes `path`.exr."""
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
     scene.cycles.samples = samples
@@ -35,7 +35,7 @@ def render_with_cycles(samples):
     scene.cycles.use_adaptive_sampling = False
     settings = scene.render.image_settings
     settings.file_format, settings.color_depth = "OPEN_EXR", "32"
-    scene.render.filepath = os.path.join(tempfile.mkdtemp(), "render.exr")
+    scene.render.filepath = f"{path}.exr"
     bpy.ops.render.render(write_still=True)
     image = bpy.data.images.load(scene.render.filepath)
     pixels = np.empty(len(image.pixels), np.float32)
@@ -58,6 +58,9 @@ class Node(unittest.TestCase):
     def setUp(self):
         bpy.ops.wm.read_factory_settings(use_empty=True)
         bpy.ops.preferences.addon_enable(module="wardmis")
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.path = os.path.join(folder.name, "test")
 
     def test_new_node_has_the_documented_inputs_and_defaults(self):
         _, node = ward_material()
@@ -83,7 +86,7 @@ class Node(unittest.TestCase):
         node.variant = "ward-dur"
         node.inputs["Alpha Y"].default_value = 0.25
         bpy.data.materials["Ward"].use_fake_user = True
-        path = os.path.join(tempfile.mkdtemp(), "ward.blend")
+        path = f"{self.path}.blend"
         bpy.ops.wm.save_as_mainfile(filepath=path)
         bpy.ops.wm.read_factory_settings(use_empty=True)
         with bpy.data.libraries.load(path) as (_, wanted):
@@ -149,7 +152,7 @@ class Node(unittest.TestCase):
                     node.inputs["Rotation"].default_value = rotation
                     theta = np.radians(20)
                     sun.rotation_euler = (0, theta, 0) if axis == 0 else (-theta, 0, 0)
-                    mean = render_with_cycles(4)[..., 0].mean()
+                    mean = render_with_cycles(4, self.path)[..., 0].mean()
                     alpha = (ax, ay)[axis if rotation == 0.0 else 1 - axis]
                     slope = np.tan(theta / 2) / alpha
                     cos_h, cos_i = np.cos(theta / 2), np.cos(theta)

@@ -187,7 +187,16 @@ class Failures(RenderTest):
         self.check("ended without an image", MULTILAYER, fake="nothing")
 
     def test_image_of_the_wrong_size(self):
-        self.check("Blender cannot read the image of the renderer", MULTILAYER, fake="wrong-size")
+        self.check("cannot read the image of the renderer as one of 40 x 20 pixels", MULTILAYER, fake="wrong-size")
+
+    def test_event_that_is_not_understood(self):
+        self.check("sent what this add-on does not understand (KeyError('fraction')", fake="odd-event")
+
+    def test_full_disk(self):
+        full = "import shutil, types\nshutil.disk_usage = lambda path: types.SimpleNamespace(free={})\n"
+        self.check(f"the disk of {self.folder} has 1 KiB free, and the image wants 15", full.format(1024))
+        # room enough for an image of this size, but not for the file that has been rendered
+        self.check(f"the disk of {self.folder} has 15 KiB free", MULTILAYER + full.format(15_000))
 
     def test_renderer_not_found(self):
         self.check("which the environment variable WARDMIS_BINARY names", WARDMIS_BINARY=str(self.folder / "none"))

@@ -69,6 +69,8 @@ class Usage(CommandTest):
             ((*render, "--resolution", "48"), "WIDTHxHEIGHT"),
             ((*render, "--resolution", "0x10"), "WIDTHxHEIGHT"),
             ((*render, "--passes", "combined,beauty"), "beauty"),
+            (("render", self.scene(), "-o", self.folder / "out.png"), "ends in .exr"),
+            ((*render, "--preview", self.folder / "preview"), "ends in .exr"),
         ):
             with self.subTest(arguments=arguments):
                 self.refused(2, *arguments, says=[says])
@@ -240,6 +242,10 @@ class Image(CommandTest):
         self.assertNotIn("Allocation Lobe", exr.read(self.out).passes)
         # Lambert under a point, straight below it: 0.8/pi * 5/2^2
         self.assertAlmostEqual(combined(self.out)[7:9, 7:9, 0].mean(), 0.8 / np.pi * 5 / 4, delta=2e-3)
+        # without the point, nothing gives light
+        document["scenes"][0]["nodes"].pop()
+        scene.write_text(json.dumps(document))
+        self.assertIn("gives light", self.run_command("render", scene, "-o", self.out, "--spp", "1").stderr)
 
 
 class Progress(CommandTest):

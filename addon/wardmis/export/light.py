@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from .. import compat
-from .context import ExportContext
+from .context import ExportContext, ExportError
 from .emission import constant_color, note_unsupported, strength, surface
 from .model import LightData, Rgb
 
@@ -28,6 +28,8 @@ def export_light(
     power = light.energy * compat.light_exposure(light)
     temperature = compat.light_temperature_color(light)
     color = tuple(c * t * n for c, t, n in zip(light.color, temperature, node_factor))
+    if not np.isfinite((power, *color)).all():
+        raise ExportError(f"light '{light.name}': its power or colour is not a finite number; correct it")
     if power < 0 or min(color) < 0:
         context.note(f"light '{light.name}': negative light is not supported; the light is left out")
         return None
