@@ -33,15 +33,7 @@ struct Batch {
 // f_s cos (rho_s = 1) and the lobe's pdf at one direction.
 template <class T>
 inline WardValue<T> evaluateWard(const Surface& s, Vec3<T> wi, Vec3<T> wo) {
-  const T invAx = T(1) / T(s.ax), invAy = T(1) / T(s.ay);
-  switch (s.variant) {
-    case WardVariant::kWard:
-      return wardEvaluate<WardVariant::kWard>(wi, wo, invAx, invAy);
-    case WardVariant::kWardDur:
-      return wardEvaluate<WardVariant::kWardDur>(wi, wo, invAx, invAy);
-    default:
-      return wardEvaluate<WardVariant::kWardGmd>(wi, wo, invAx, invAy);
-  }
+  return wardEvaluate(s.variant, wi, wo, T(1) / T(s.ax), T(1) / T(s.ay));
 }
 
 // The same for the first n directions of a batch, in one vectorised loop.

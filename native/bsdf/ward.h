@@ -24,11 +24,12 @@ struct WardValue {
   T pdf;   // of Walter's sampling, sr^-1
 };
 
-// Everything the three variants share: e = K exp(-E), slope = 1 + |s|^2.
+// Everything the three variants share: e = K exp(-E), slope = 1 + |s|^2, hz = wi.z + wo.z.
 template <class T>
 struct WardHalf {
   T e, slope, hz;
 
+  WardHalf(T ke, T onePlusSlope2, T hSum) : e(ke), slope(onePlusSlope2), hz(hSum) {}
   WardHalf(Vec3<T> wi, Vec3<T> wo, T invAx, T invAy) {
     const Vec3<T> h = wi + wo;
     const T inv = T(1) / h.z;  // callers see to wi.z > 0 and wo.z > 0
@@ -41,6 +42,16 @@ struct WardHalf {
     hz = h.z;
   }
   T pdf() const { return T(0.5) * e * slope / hz; }  // K e^-E |h|^2 / (2 h.z^3)
+  // f_s cos(theta_i) for rho_s = 1, ci = cos(theta_i) > 0, co = cos(theta_o) > 0
+  template <WardVariant V>
+  T fCos(T ci, T co) const {
+    if constexpr (V == WardVariant::kWard)
+      return T(0.25) * e * std::sqrt(ci) / std::sqrt(co);  // K/4 e^-E / sqrt(ci co)
+    else if constexpr (V == WardVariant::kWardDur)
+      return T(0.25) * e / co;  // K/4 e^-E / (ci co)
+    else
+      return e * slope * (ci / hz) / hz;  // K e^-E |h|^2 / h.z^4
+  }
 };
 
 // f_s cos and pdf at one pair of directions, zero unless both lie above the surface.
@@ -49,14 +60,20 @@ inline WardValue<T> wardEvaluate(Vec3<T> wi, Vec3<T> wo, T invAx, T invAy) {
   const bool above = (wi.z > T(0)) & (wo.z > T(0));
   const T ci = above ? wi.z : T(1), co = above ? wo.z : T(1);
   const WardHalf<T> half({wi.x, wi.y, ci}, {wo.x, wo.y, co}, invAx, invAy);
-  T fCos;
-  if constexpr (V == WardVariant::kWard)
-    fCos = T(0.25) * half.e * std::sqrt(ci) / std::sqrt(co);  // K/4 e^-E / sqrt(ci co)
-  else if constexpr (V == WardVariant::kWardDur)
-    fCos = T(0.25) * half.e / co;  // K/4 e^-E / (ci co)
-  else
-    fCos = half.e * half.slope * (ci / half.hz) / half.hz;  // K e^-E |h|^2 / h.z^4
-  return {above ? fCos : T(0), above ? half.pdf() : T(0)};
+  return {above ? half.template fCos<V>(ci, co) : T(0), above ? half.pdf() : T(0)};
+}
+
+// The same where the variant is known at run time only.
+template <class T>
+inline WardValue<T> wardEvaluate(WardVariant variant, Vec3<T> wi, Vec3<T> wo, T invAx, T invAy) {
+  switch (variant) {
+    case WardVariant::kWard:
+      return wardEvaluate<WardVariant::kWard>(wi, wo, invAx, invAy);
+    case WardVariant::kWardDur:
+      return wardEvaluate<WardVariant::kWardDur>(wi, wo, invAx, invAy);
+    default:
+      return wardEvaluate<WardVariant::kWardGmd>(wi, wo, invAx, invAy);
+  }
 }
 
 // A direction with density wardEvaluate().pdf; below the surface (wi.z <= 0) its contribution is zero, and it counts.

@@ -60,6 +60,29 @@ constexpr uint32_t sobol1Reversed(uint32_t i) {
   return i;
 }
 
+// A stream of 53-bit numbers for studies without pixels (Steele, Lea and Flood 2014, "SplitMix"): as many streams as there
+// are keys, so that trials do not depend on threads.
+class Stream {
+ public:
+  Stream(uint64_t seed, uint64_t key) : state_(scramble(seed) ^ scramble(key * 0x9e3779b97f4a7c15ull + 1)) {}
+  double uniform() {  // [0, 1)
+    state_ += 0x9e3779b97f4a7c15ull;
+    return static_cast<double>(scramble(state_) >> 11) * 0x1p-53;
+  }
+  Vec2<double> square() {
+    const double x = uniform();
+    return {x, uniform()};
+  }
+
+ private:
+  static constexpr uint64_t scramble(uint64_t z) {
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+    return z ^ (z >> 31);
+  }
+  uint64_t state_;
+};
+
 enum class SamplerType : uint8_t { kIndependent, kStratified, kSobol };
 
 // Points in the unit square for one pixel. `dimension` names the use (see Dimension in integrate/), `index` counts the

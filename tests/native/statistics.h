@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What tests of random quantities need: a generator that is not the renderer's own, estimates with their standard
-// errors, and the chi-square test of a sampler against its density.
+// What tests of random quantities need: a generator that is not the renderer's own, and the chi-square test of a sampler
+// against its density.
 #pragma once
 
 #include <algorithm>
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "math/number.h"
+#include "math/statistics.h"
 #include "math/vec.h"
 
 namespace wardmis::test {
@@ -46,26 +47,7 @@ class Random {
   std::mt19937_64 bits_;
 };
 
-// Mean and variance of independent values, and the standard errors of both (moments by Pebay's updates).
-class Estimate {
- public:
-  void add(double x) {
-    const double before = n_;
-    n_ += 1;
-    const double d = x - mean_, dn = d / n_, dn2 = dn * dn, term = d * dn * before;
-    mean_ += dn;
-    m4_ += term * dn2 * (n_ * n_ - 3 * n_ + 3) + 6 * dn2 * m2_ - 4 * dn * m3_;
-    m3_ += term * dn * (n_ - 2) - 3 * dn * m2_;
-    m2_ += term;
-  }
-  double mean() const { return mean_; }
-  double variance() const { return m2_ / (n_ - 1); }
-  double error() const { return std::sqrt(variance() / n_); }
-  double varianceError() const { return std::sqrt(std::max(0.0, m4_ / n_ - variance() * variance()) / n_); }
-
- private:
-  double n_ = 0, mean_ = 0, m2_ = 0, m3_ = 0, m4_ = 0;
-};
+using wardmis::Estimate;
 
 struct Fit {
   double p;     // probability of a worse fit if the density is right

@@ -59,19 +59,7 @@ class WardCase {
  private:
   Sampled at(Vec3<double> wi) const {
     if (!(wi.z > 0)) return {0, {}};
-    WardValue<double> w{};
-    const double ix = 1 / ax_, iy = 1 / ay_;
-    switch (variant_) {
-      case WardVariant::kWard:
-        w = wardEvaluate<WardVariant::kWard>(wi, wo_, ix, iy);
-        break;
-      case WardVariant::kWardDur:
-        w = wardEvaluate<WardVariant::kWardDur>(wi, wo_, ix, iy);
-        break;
-      case WardVariant::kWardGmd:
-        w = wardEvaluate<WardVariant::kWardGmd>(wi, wo_, ix, iy);
-        break;
-    }
+    const WardValue<double> w = wardEvaluate(variant_, wi, wo_, 1 / ax_, 1 / ay_);
     const double uniform = techniques == 3 ? 0.5 / kPi<double> : 0;
     return {static_cast<float>(w.fCos * scale_ * wi.z),
             {static_cast<float>(w.pdf), static_cast<float>(wi.z / kPi<double>), static_cast<float>(uniform)}};

@@ -1,0 +1,434 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mis/strategy.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <boost/math/tools/minima.hpp>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace wardmis {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kHuge = 1e290;  // above this, numbers are handled by their logarithm
+
+using A = Allocation;
+using W = Weights;
+using K = Knowledge;
+constexpr Strategy kStrategies[] = {
+    {"equal", A::kEqual, W::kBalance, K::kGiven, "Def. 7; Veach and Guibas 1995"},
+    {"variance", A::kVariance, W::kNonbalance, K::kGiven, "Def. 8 with the weights of Eq. 14; Sbert et al. 2016"},
+    {"variance-balance", A::kVariance, W::kBalance, K::kGiven, "Def. 8 read as balance"},
+    {"standard-deviation", A::kStandardDeviation, W::kNonbalance, K::kGiven, "Sbert et al. 2018"},
+    {"standard-deviation-balance", A::kStandardDeviation, W::kBalance, K::kGiven, "Sbert et al. 2018"},
+    {"second-moment", A::kSecondMoment, W::kBalance, K::kGiven, "Def. 9; Sbert et al. 2018"},
+    {"second-moment-nonbalance", A::kSecondMoment, W::kNonbalance, K::kGiven, "Def. 9 with the weights of Eq. 14"},
+    {"inverse-variance", A::kInverseVariance, W::kBalance, K::kGiven, "Sbert et al. 2018"},
+    {"equalised", A::kEqualised, W::kBalance, K::kGiven, "Havran and Sbert 2014"},
+    {"equalised-adaptive", A::kEqualised, W::kBalance, K::kProgressive, "Sbert and Havran 2017"},
+    {"linear", A::kLinear, W::kBalance, K::kGiven, "Sbert and Szirmay-Kalos 2023"},
+    {"second-order", A::kSecondOrder, W::kBalance, K::kGiven, "Lu et al. 2013"},
+    {"representativity", A::kRepresentativity, W::kBalance, K::kGiven, "after Pajot et al. 2011"},
+    {"power", A::kEqual, W::kPower, K::kGiven, "Veach and Guibas 1995"},
+    {"cutoff", A::kEqual, W::kCutoff, K::kGiven, "Veach and Guibas 1995"},
+    {"maximum", A::kEqual, W::kMaximum, K::kGiven, "Veach and Guibas 1995"},
+    {"variance-aware", A::kEqual, W::kVarianceAware, K::kGiven, "Grittmann et al. 2019"},
+    {"optimal", A::kEqual, W::kOptimal, K::kGiven, "Kondapaneni et al. 2019"},
+    {"optimal-progressive", A::kEqual, W::kOptimal, K::kProgressive, "Kondapaneni et al. 2019"},
+    {"optimal-direct", A::kEqual, W::kOptimal, K::kDirect, "Kondapaneni et al. 2019"},
+    {"best", A::kBest, W::kBalance, K::kGiven, "the minimum, found numerically"},
+    {"auto", A::kBest, W::kBalance, K::kPilot, "ours"},
+};
+
+double square(double x) { return x * x; }
+size_t at(int i) { return static_cast<size_t>(i); }
+
+double mixture(const Densities& a, const Densities& p, int n) {
+  double q = 0;
+  for (int k = 0; k < n; ++k) q += a[at(k)] * p[at(k)];
+  return q;
+}
+
+// (sum of values as logarithms) Adds exp(x) to a sum that is kept as exp(scale) * sum.
+class LogSum {
+ public:
+  void add(double weight, double x) {
+    if (!(weight > 0) || x == -kInfinity) return;
+    if (x > scale_) sum_ = sum_ * std::exp(scale_ - x) + weight, scale_ = x;
+    else sum_ += weight * std::exp(x - scale_);
+  }
+  double log() const { return sum_ > 0 ? scale_ + std::log(sum_) : -kInfinity; }
+
+ private:
+  double scale_ = -kInfinity, sum_ = 0;
+};
+
+Densities equalFractions(int n) {
+  Densities a{};
+  std::fill_n(a.begin(), n, 1.0 / n);
+  return a;
+}
+
+// Scales to sum 1, with no fraction under the least; false where that makes no sense.
+bool normalise(Densities& a, int n) {
+  double sum = 0;
+  for (int i = 0; i < n; ++i) {
+    if (!(a[at(i)] >= 0) || std::isinf(a[at(i)])) return false;
+    sum += a[at(i)];
+  }
+  if (!(sum > 0) || std::isinf(sum)) return false;
+  for (int i = 0; i < n; ++i) a[at(i)] /= sum;
+  return true;
+}
+
+// Fractions proportional to exp(x_i).
+Densities fromLogarithms(const Densities& x, int n) {
+  const double top = *std::max_element(x.begin(), x.begin() + n);
+  Densities a{};
+  for (int i = 0; i < n; ++i) a[at(i)] = std::isinf(top) ? (x[at(i)] == top ? 1 : 0) : std::exp(x[at(i)] - top);
+  normalise(a, n);
+  return a;
+}
+
+// Minimises `objective` over the simplex by line searches along which two techniques exchange samples, from several
+// starts. In the logarithm of their ratio, so that fractions near 0 and 1 are found.
+template <class F>
+Densities minimiseOverSimplex(int n, const F& objective) {
+  constexpr double kSpan = 36;  // e^-36: kLeastFraction
+  const auto exchange = [&](Densities a, int i, int k, double logRatio) {
+    const double both = a[at(i)] + a[at(k)];
+    // each by its own formula, so that the small one keeps its digits
+    a[at(i)] = both / (1 + std::exp(-logRatio)), a[at(k)] = both / (1 + std::exp(logRatio));
+    return a;
+  };
+  Densities best = equalFractions(n);
+  double bestValue = objective(best);
+  std::vector<Densities> starts{best};
+  if (n > 2)
+    for (int i = 0; i < n; ++i) {
+      Densities a{};
+      std::fill_n(a.begin(), n, 0.02 / (n - 1));
+      a[at(i)] = 0.98;
+      starts.push_back(a);
+    }
+  for (Densities a : starts) {
+    double value = objective(a);
+    for (int round = 0; round < (n == 2 ? 1 : 12); ++round) {
+      const double before = value;
+      for (int i = 0; i < n; ++i)
+        for (int k = i + 1; k < n; ++k) {
+          const auto f = [&](double x) { return objective(exchange(a, i, k, x)); };
+          constexpr int kSteps = 36;
+          double at0 = 0, low = kInfinity;
+          for (int s = 0; s <= kSteps; ++s) {
+            const double x = -kSpan + 2 * kSpan * s / kSteps, v = f(x);
+            if (v < low) low = v, at0 = x;
+          }
+          const double step = 2 * kSpan / kSteps;
+          const auto [x, v] = boost::math::tools::brent_find_minima(f, std::max(-kSpan, at0 - step),
+                                                                    std::min(kSpan, at0 + step), 40);
+          if (std::min(v, low) < value) {
+            a = exchange(a, i, k, v < low ? x : at0);
+            value = std::min(v, low);
+          }
+        }
+      if (!(value < before * (1 - 1e-10))) break;
+    }
+    if (value < bestValue) best = a, bestValue = value;
+  }
+  return best;
+}
+
+double meanCost(const Densities& a, const Densities* cost, int n) {
+  double c = 0;
+  for (int i = 0; i < n; ++i) c += a[at(i)] * (cost != nullptr ? (*cost)[at(i)] : 1.0);
+  return c;
+}
+
+// integral f^2/q - mu^2, as a sum of squares.
+double oneSampleVariance(const Densities& a, const Points& points, double mu) {
+  const int n = points.techniques;
+  double outside = 0;
+  for (int i = 0; i < n; ++i) outside += a[at(i)] * points.outside[at(i)];
+  return points.integrate([&](const Point& x) {
+           const double q = mixture(a, x.p, n);
+           return q > 0 ? square(x.f / q - mu) * q : 0;
+         }) +
+         outside * mu * mu;
+}
+
+// The matrix of <p_i, p_k> and the vector <f, p_i> under 1/q, scaled by sqrt(a_i a_k): the diagonal is at most 1.
+std::pair<Eigen::MatrixXd, Eigen::VectorXd> normalEquations(const Points& points, const Densities& a) {
+  const int n = points.techniques;
+  Eigen::MatrixXd m = Eigen::MatrixXd::Zero(n, n);
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(n);
+  for (const Point& x : points.list) {
+    const double q = mixture(a, x.p, n);
+    if (!(q > 0)) continue;
+    for (int i = 0; i < n; ++i) {
+      const double pi = std::sqrt(a[at(i)]) * x.p[at(i)];
+      b(i) += x.w * x.f * (pi / q);
+      for (int k = 0; k <= i; ++k) m(i, k) += x.w * pi * (std::sqrt(a[at(k)]) * x.p[at(k)] / q);
+    }
+  }
+  for (int i = 0; i < n; ++i) {
+    m(i, i) += points.outside[at(i)];  // there q = a_i p_i
+    for (int k = i + 1; k < n; ++k) m(i, k) = m(k, i);
+  }
+  return {m, b};
+}
+
+// The least-squares solution of least length: techniques that duplicate each other make the matrix singular.
+Eigen::VectorXd solve(const std::pair<Eigen::MatrixXd, Eigen::VectorXd>& equations) {
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
+  decomposition.setThreshold(1e-11);
+  decomposition.compute(equations.first);
+  return decomposition.solve(equations.second);
+}
+
+// One Newton step on V(a) = integral f^2/(a p_1 + (1-a) p_2) from a = 1/2, clamped.
+Densities secondOrder(const Points& points) {
+  const double first = -points.integrate([](const Point& x) {
+    const double q = 0.5 * (x.p[0] + x.p[1]);
+    return q > 0 ? square(x.f / q) * (x.p[0] - x.p[1]) : 0;
+  });
+  const double second = 2 * points.integrate([](const Point& x) {
+    const double q = 0.5 * (x.p[0] + x.p[1]);
+    return q > 0 ? square(x.f / q) * ((x.p[0] - x.p[1]) / q) * (x.p[0] - x.p[1]) : 0;
+  });
+  const double a = second > 0 ? std::clamp(0.5 - first / second, 0.05, 0.95) : 0.5;
+  return {a, 1 - a};
+}
+
+}  // namespace
+
+std::span<const Strategy> strategies() { return kStrategies; }
+
+const Strategy* findStrategy(std::string_view name) {
+  const auto it = std::find_if(std::begin(kStrategies), std::end(kStrategies), [&](auto& s) { return s.name == name; });
+  return it != std::end(kStrategies) ? it : nullptr;
+}
+
+double IntegrandMoments::second(int i) const { return std::exp(logSecond[at(i)]); }
+
+IntegrandMoments momentsOf(const Points& points) {
+  IntegrandMoments m;
+  const int n = m.techniques = points.techniques;
+  std::array<LogSum, kMaxTechniques> second;
+  for (const Point& x : points.list) {
+    m.integral += x.w * x.f;
+    const double sum = mixture(Densities{1, 1, 1, 1, 1, 1, 1, 1}, x.p, n);
+    if (!(x.f > 0)) continue;
+    for (int i = 0; i < n; ++i) {
+      if (sum > 0) m.mean[at(i)] += x.w * x.f * (x.p[at(i)] / sum);
+      second[at(i)].add(x.w, 2 * std::log(x.f) - x.logP[at(i)]);
+    }
+  }
+  for (int i = 0; i < n; ++i) {
+    m.logSecond[at(i)] = second[at(i)].log();
+    m.variance[at(i)] = points.outside[at(i)] * square(m.mean[at(i)]);
+    m.variancePrim[at(i)] = m.logSecond[at(i)] > std::log(kHuge) ? kInfinity : points.outside[at(i)] * square(m.integral);
+  }
+  for (const Point& x : points.list) {
+    const double sum = mixture(Densities{1, 1, 1, 1, 1, 1, 1, 1}, x.p, n);
+    for (int i = 0; i < n; ++i) {
+      if (sum > 0) m.variance[at(i)] += x.w * square(x.f / sum - m.mean[at(i)]) * x.p[at(i)];
+      if (std::isinf(m.variancePrim[at(i)])) continue;
+      const double ratio = x.f > 0 ? std::exp(std::log(x.f) - x.logP[at(i)]) : 0;
+      m.variancePrim[at(i)] += ratio > 1e8 * m.integral ? x.w * std::exp(2 * std::log(x.f) - x.logP[at(i)])
+                                                        : x.w * square(ratio - m.integral) * x.p[at(i)];
+    }
+  }
+  return m;
+}
+
+Densities fractions(Allocation rule, const Points& points, const IntegrandMoments& m, const Densities* cost) {
+  const int n = points.techniques;
+  Densities a{}, x{};
+  const auto c = [&](int i) { return cost != nullptr ? (*cost)[at(i)] : 1.0; };
+  bool costDone = false;
+  switch (rule) {
+    case A::kEqual:
+      return equalFractions(n);
+    case A::kVariance:
+      for (int i = 0; i < n; ++i) a[at(i)] = m.variance[at(i)] / c(i);
+      costDone = true;
+      break;
+    case A::kStandardDeviation:
+      for (int i = 0; i < n; ++i) a[at(i)] = std::sqrt(m.variance[at(i)] / c(i));
+      costDone = true;
+      break;
+    case A::kSecondMoment:
+      for (int i = 0; i < n; ++i) {
+        if (m.logSecond[at(i)] == -kInfinity) return equalFractions(n);
+        x[at(i)] = -m.logSecond[at(i)] - std::log(c(i));
+      }
+      a = fromLogarithms(x, n);
+      costDone = true;
+      break;
+    case A::kInverseVariance:
+      for (int i = 0; i < n; ++i) {
+        if (!(m.variancePrim[at(i)] > 0)) return equalFractions(n);
+        x[at(i)] = std::isinf(m.variancePrim[at(i)]) ? -m.logSecond[at(i)] : -std::log(m.variancePrim[at(i)]);
+        x[at(i)] -= std::log(c(i));
+      }
+      a = fromLogarithms(x, n);
+      costDone = true;
+      break;
+    case A::kRepresentativity:
+      a = m.mean;
+      break;
+    case A::kSecondOrder:
+      if (n != 2) return equalFractions(n);
+      a = secondOrder(points);
+      break;
+    case A::kLinear: {
+      const Densities equal = equalFractions(n);
+      const Eigen::VectorXd solution = solve(normalEquations(points, equal));
+      for (int i = 0; i < n; ++i) a[at(i)] = std::max(0.0, solution(i));  // scaled by sqrt(1/n) and mu alike
+      break;
+    }
+    case A::kEqualised:
+      return minimiseOverSimplex(n, [&](const Densities& f) {
+        return (oneSampleVariance(f, points, m.integral) + (cost != nullptr ? square(m.integral) : 0)) *
+               meanCost(f, cost, n);
+      });
+    case A::kBest:
+      return minimiseOverSimplex(
+          n, [&](const Densities& f) { return std::exp(logVariance(W::kBalance, f, points, m)) * meanCost(f, cost, n); });
+  }
+  if (!costDone)
+    for (int i = 0; i < n; ++i) a[at(i)] /= std::sqrt(c(i));
+  return normalise(a, n) ? a : equalFractions(n);
+}
+
+double weightOverDensity(Weights rule, int i, int n, const Densities& p, const Densities& a, const Densities& v) {
+  const double own = a[at(i)] * p[at(i)];
+  switch (rule) {
+    case W::kBalance: {
+      const double q = mixture(a, p, n);
+      return q > 0 ? a[at(i)] / q : 0;
+    }
+    case W::kNonbalance: {
+      double sum = 0;
+      for (int k = 0; k < n; ++k) sum += p[at(k)];
+      return sum > 0 ? 1 / sum : 0;
+    }
+    case W::kPower: {  // by ratios: squares overflow and underflow
+      if (!(own > 0)) return 0;
+      double sum = 0;
+      for (int k = 0; k < n; ++k) sum += square(a[at(k)] * p[at(k)] / own);
+      return 1 / (sum * p[at(i)]);
+    }
+    case W::kCutoff: {
+      double top = 0, sum = 0;
+      for (int k = 0; k < n; ++k) top = std::max(top, a[at(k)] * p[at(k)]);
+      if (!(own > 0) || own < 0.1 * top) return 0;
+      for (int k = 0; k < n; ++k)
+        if (a[at(k)] * p[at(k)] >= 0.1 * top) sum += a[at(k)] * p[at(k)];
+      return a[at(i)] / sum;
+    }
+    case W::kMaximum: {
+      for (int k = 0; k < n; ++k)
+        if (a[at(k)] * p[at(k)] > own || (k < i && a[at(k)] * p[at(k)] == own)) return 0;
+      return own > 0 ? 1 / p[at(i)] : 0;
+    }
+    case W::kVarianceAware: {
+      double sum = 0;
+      for (int k = 0; k < n; ++k) sum += v[at(k)] * a[at(k)] * p[at(k)];
+      return sum > 0 ? v[at(i)] * a[at(i)] / sum : 0;
+    }
+    case W::kOptimal:
+      break;  // no function of a and p alone
+  }
+  return 0;
+}
+
+Densities varianceAwareFactors(const IntegrandMoments& m) {
+  Densities v{};
+  for (int i = 0; i < m.techniques; ++i) {
+    const double variance = m.variancePrim[at(i)];
+    v[at(i)] = std::isinf(variance) ? 1 : std::min(1e12, 1 + square(m.integral) / variance);
+    if (!(variance > 0)) v[at(i)] = 1e12;
+  }
+  return v;
+}
+
+Densities optimalTau(const Points& points, const Densities& a) {
+  const Eigen::VectorXd solution = solve(normalEquations(points, a));
+  Densities tau{};
+  for (int i = 0; i < points.techniques; ++i) tau[at(i)] = std::sqrt(a[at(i)]) * solution(i);
+  return tau;
+}
+
+double logVariance(Weights rule, const Densities& a, const Points& points, const IntegrandMoments& m) {
+  const int n = points.techniques;
+  Densities mean{}, variance{}, tau{}, logA{};
+  for (int i = 0; i < n; ++i) logA[at(i)] = std::log(a[at(i)]);
+  if (rule == W::kNonbalance) {
+    variance = m.variance;
+    // fractions beyond double's range
+    if (*std::min_element(a.begin(), a.begin() + n) < 1e-290) {
+      Densities x{};
+      for (int i = 0; i < n; ++i) x[at(i)] = -m.logSecond[at(i)];
+      LogSum sum;
+      for (int i = 0; i < n; ++i) sum.add(1, x[at(i)]);
+      for (int i = 0; i < n; ++i)
+        if (a[at(i)] < 1e-290) logA[at(i)] = x[at(i)] - sum.log();
+    }
+  } else {
+    const Densities v = rule == W::kVarianceAware ? varianceAwareFactors(m) : Densities{};
+    if (rule == W::kOptimal) tau = optimalTau(points, a);
+    // one technique's contribution y = w_i f/p_i to its own sum
+    const auto y = [&](int i, const Point& x) {
+      if (rule != W::kOptimal) return x.f * weightOverDensity(rule, i, n, x.p, a, v);
+      const double q = mixture(a, x.p, n);
+      return q > 0 ? a[at(i)] * ((x.f - mixture(tau, x.p, n)) / q) : 0;
+    };
+    Densities outside{};
+    for (int i = 0; i < n; ++i) outside[at(i)] = rule == W::kOptimal ? -tau[at(i)] : 0;
+    for (int i = 0; i < n; ++i) {
+      if (!(a[at(i)] > 0)) continue;
+      const double inside =
+          points.integrate([&](const Point& x) { return x.p[at(i)] > 0 ? y(i, x) * x.p[at(i)] : 0; });
+      mean[at(i)] = inside + points.outside[at(i)] * outside[at(i)];
+      variance[at(i)] =
+          points.integrate([&](const Point& x) { return x.p[at(i)] > 0 ? square(y(i, x) - mean[at(i)]) * x.p[at(i)] : 0; }) +
+          points.outside[at(i)] * square(outside[at(i)] - mean[at(i)]);
+    }
+  }
+  LogSum sum;
+  for (int i = 0; i < n; ++i)
+    if (variance[at(i)] > 0) sum.add(1, std::log(variance[at(i)]) - logA[at(i)]);
+  return sum.log();
+}
+
+double logVarianceOneSample(const Densities& a, const Points& points) {
+  const double mu = points.integrate([](const Point& x) { return x.f; });
+  return std::log(oneSampleVariance(a, points, mu));
+}
+
+std::array<int, kMaxTechniques> wholeCounts(const Densities& a, int techniques, int n) {
+  std::array<int, kMaxTechniques> counts{};
+  std::vector<std::pair<double, int>> rest;
+  int given = 0;
+  for (int i = 0; i < techniques; ++i) {
+    const double exact = a[at(i)] * n;
+    counts[at(i)] = static_cast<int>(exact);
+    given += counts[at(i)];
+    rest.emplace_back(exact - counts[at(i)], -i);
+  }
+  std::sort(rest.rbegin(), rest.rend());
+  for (size_t k = 0; given < n; k = (k + 1) % rest.size(), ++given) ++counts[at(-rest[k].second)];
+  for (int i = 0; i < techniques; ++i)
+    while (counts[at(i)] < 1) {
+      --*std::max_element(counts.begin(), counts.begin() + techniques);
+      ++counts[at(i)];
+    }
+  return counts;
+}
+
+}  // namespace wardmis

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Every way of sharing N samples between techniques, as data: the fractions a_i = N_i/N and the weights w_i of the
+// estimator F = sum_i 1/N_i sum_j w_i(X_ij) f(X_ij)/p_i(X_ij), from points that stand for the integrand. docs/theory.md has
+// each one's source, formula and conditions. For any number of techniques.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "mis/points.h"
+
+namespace wardmis {
+
+enum class Allocation : uint8_t {
+  kEqual,              // Def. 7
+  kVariance,           // Def. 8: sigma^2_i,eq
+  kStandardDeviation,  // Sbert et al. 2018: sigma_i,eq
+  kSecondMoment,       // Def. 9: 1/m^2_i
+  kInverseVariance,    // 1/(m^2_i - mu^2)
+  kEqualised,          // Havran and Sbert 2014: equal second moments, the minimum of integral f^2/q
+  kLinear,             // Sbert and Szirmay-Kalos 2023: least-squares fit of the mixture to f, a linear system
+  kSecondOrder,        // Lu et al. 2013: one Newton step from equal counts; two techniques
+  kRepresentativity,   // after Pajot et al. 2011: mu_i,eq, the technique's share of the integral
+  kBest,               // the minimum of N Var with balance weights, found numerically: the yardstick
+};
+
+enum class Weights : uint8_t {
+  kBalance,        // a_i p_i
+  kNonbalance,     // p_i (Eq. 14)
+  kPower,          // (a_i p_i)^2 (Veach 1995)
+  kCutoff,         // a_i p_i, dropped below a tenth of the largest (Veach 1995)
+  kMaximum,        // the largest a_i p_i takes all (Veach 1995)
+  kVarianceAware,  // v_i a_i p_i, v_i = m^2_i/(m^2_i - mu^2) (Grittmann et al. 2019)
+  kOptimal,        // Kondapaneni et al. 2019, for given fractions
+};
+
+// How the numbers that a strategy needs are got in a run.
+enum class Knowledge : uint8_t {
+  kGiven,        // from points that are independent of the samples
+  kProgressive,  // from the samples of the passes before
+  kDirect,       // from the same samples: biased by O(1/N)
+  kPilot,        // from a share of the N samples, drawn first
+};
+
+struct Strategy {
+  std::string_view name;
+  Allocation allocation;
+  Weights weights;
+  Knowledge knowledge = Knowledge::kGiven;
+  std::string_view source;
+};
+std::span<const Strategy> strategies();
+const Strategy* findStrategy(std::string_view name);
+
+// What is known of an integrand, from points.
+struct IntegrandMoments {
+  int techniques = 0;
+  double integral = 0;      // mu
+  Densities mean{};         // mu_i,eq = integral g p_i, g = f/sum_k p_k
+  Densities variance{};     // sigma^2_i,eq
+  Densities logSecond{};    // ln m^2_i, m^2_i = integral f^2/p_i
+  Densities variancePrim{}; // m^2_i - mu^2 without its cancellation; infinite beyond double's range
+
+  double second(int i) const;  // m^2_i, infinity beyond double's range
+};
+IntegrandMoments momentsOf(const Points& points);
+
+// Fractions, which sum to 1. cost: of one sample of each technique, any unit; nothing: equal costs. Equal fractions where
+// the moments say nothing.
+Densities fractions(Allocation, const Points&, const IntegrandMoments&, const Densities* cost = nullptr);
+// The smallest fraction given, so that no technique that the weights rely on is without samples.
+inline constexpr double kLeastFraction = 1e-16;
+
+// w_i/p_i, for weights that are functions of a and p (all but kOptimal); v: of kVarianceAware.
+double weightOverDensity(Weights, int i, int techniques, const Densities& p, const Densities& a, const Densities& v);
+Densities varianceAwareFactors(const IntegrandMoments&);
+
+// tau of the optimal weights: F = sum_i tau_i + 1/N sum_ij (f - sum_k tau_k p_k)/q (X_ij).
+Densities optimalTau(const Points&, const Densities& a);
+
+// ln(N Var) of the multi-sample estimator for real-valued fractions, and of the one-sample estimator with balance
+// weights.
+double logVariance(Weights, const Densities& a, const Points&, const IntegrandMoments&);
+double logVarianceOneSample(const Densities& a, const Points&);
+
+// Whole counts: a_i N by largest remainder, at least one each (N >= techniques).
+std::array<int, kMaxTechniques> wholeCounts(const Densities& a, int techniques, int n);
+
+}  // namespace wardmis

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/cubature.h"
+
+#include <boost/math/quadrature/gauss.hpp>
+#include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <cmath>
+#include <queue>
+
+namespace wardmis {
+
+namespace {
+
+constexpr int kNodes = 15;
+constexpr size_t kMaxCells = 4000;
+constexpr int kMaxDepth = 48;
+
+struct Rule {
+  std::array<double, kNodes> x{}, kronrod{}, gauss{};  // on [-1, 1]; gauss: 0 at the nodes that it lacks
+
+  Rule() {
+    using Kronrod = boost::math::quadrature::gauss_kronrod<double, kNodes>;
+    using Gauss = boost::math::quadrature::gauss<double, 7>;
+    const auto& nodes = Kronrod::abscissa();  // 0 and the positive ones; every other one is Gauss'
+    for (size_t i = 0; i < nodes.size(); ++i) {
+      const double k = Kronrod::weights()[i], g = i % 2 == 0 ? Gauss::weights()[i / 2] : 0;
+      x[7 + i] = nodes[i], kronrod[7 + i] = k, gauss[7 + i] = g;
+      x[7 - i] = -nodes[i], kronrod[7 - i] = k, gauss[7 - i] = g;
+    }
+  }
+};
+
+const Rule& rule() {
+  static const Rule r;
+  return r;
+}
+
+}  // namespace
+
+struct Cubature::Cell {
+  int chart = 0;
+  double u0 = 0, u1 = 1, v0 = 0, v1 = 1;
+  std::vector<Point> points;  // u fastest; w holds measure x both Kronrod weights
+
+  // Of the current integrands.
+  std::vector<double> value, error;
+  bool alongU = true;
+
+  int rows() const { return static_cast<int>(points.size()) / kNodes; }
+  bool tiny() const { return u1 - u0 < std::ldexp(1.0, -kMaxDepth) && v1 - v0 < std::ldexp(1.0, -kMaxDepth); }
+};
+
+Cubature::Cubature(const Problem& problem) : problem_(problem), charts_(problem.charts()) {
+  for (size_t c = 0; c < charts_.size(); ++c) {
+    const bool flat = charts_[c].dimensions == 1;
+    const int columns = flat ? 16 : 4;
+    const std::vector<double> v = flat ? std::vector<double>{0, 1} : charts_[c].breaks;
+    for (size_t i = 0; i + 1 < v.size(); ++i)
+      for (int j = 0; j < columns; ++j)
+        cells_.push_back(make(static_cast<int>(c), double(j) / columns, (j + 1.0) / columns, v[i], v[i + 1]));
+  }
+}
+Cubature::~Cubature() = default;
+
+Cubature::Cell Cubature::make(int chart, double u0, double u1, double v0, double v1) const {
+  Cell cell{chart, u0, u1, v0, v1, {}, {}, {}, true};
+  const Chart& map = charts_[static_cast<size_t>(chart)];
+  const Rule& r = rule();
+  const int rows = map.dimensions == 1 ? 1 : kNodes;
+  cell.points.reserve(static_cast<size_t>(rows) * kNodes);
+  for (size_t i = 0; i < static_cast<size_t>(rows); ++i)
+    for (size_t j = 0; j < kNodes; ++j) {
+      const double u = 0.5 * (u0 + u1) + 0.5 * (u1 - u0) * r.x[j];
+      const double v = rows == 1 ? 0.5 : 0.5 * (v0 + v1) + 0.5 * (v1 - v0) * r.x[i];
+      Point p = map.at(u, v);
+      const double size = p.w * 0.5 * (u1 - u0) * (rows == 1 ? 1 : 0.5 * (v1 - v0));
+      p.w = size * r.kronrod[j] * (rows == 1 ? 1 : r.kronrod[i]);
+      p.error = size * r.gauss[j] * (rows == 1 ? 1 : r.gauss[i]);
+      cell.points.push_back(p);
+    }
+  return cell;
+}
+
+void Cubature::refine(const Integrands& integrands, double tolerance) {
+  const auto n = static_cast<size_t>(integrands.count);
+  const Rule& r = rule();
+  std::vector<double> total(n, 0), h(n);
+  const auto measure = [&](Cell& cell) {
+    std::vector<double> inU(n, 0), inV(n, 0), size(n, 0);
+    cell.value.assign(n, 0), cell.error.assign(n, 0);
+    for (size_t m = 0; m < cell.points.size(); ++m) {
+      const Point& p = cell.points[m];
+      integrands.evaluate(p, h.data());
+      const size_t j = m % kNodes, i = m / kNodes;
+      const double gu = r.gauss[j] / r.kronrod[j], gv = cell.rows() == 1 ? 1 : r.gauss[i] / r.kronrod[i];
+      for (size_t k = 0; k < n; ++k) {
+        const double v = p.w * h[k];
+        cell.value[k] += v, size[k] += std::abs(v), inU[k] += v * gu, inV[k] += v * gv;
+      }
+    }
+    double worstU = 0, worstV = 0;
+    for (size_t k = 0; k < n; ++k) {
+      if (!(size[k] > 0)) continue;
+      // QUADPACK's estimate: the difference of the two rules is the error of the lower one
+      const auto estimate = [&](double difference) {
+        return size[k] * std::pow(std::min(1.0, 200 * std::abs(difference) / size[k]), 1.5);
+      };
+      const double eu = estimate(cell.value[k] - inU[k]), ev = estimate(cell.value[k] - inV[k]);
+      cell.error[k] = eu + ev;
+      const double scale = std::max(std::abs(total[k]), size[k]);
+      worstU = std::max(worstU, eu / scale), worstV = std::max(worstV, ev / scale);
+    }
+    cell.alongU = worstU >= worstV;
+  };
+  for (Cell& cell : cells_) {
+    measure(cell);
+    for (size_t k = 0; k < n; ++k) total[k] += cell.value[k];
+  }
+  std::vector<double> error(n, 0);
+  for (Cell& cell : cells_) {
+    measure(cell);  // again, now that the totals are known
+    for (size_t k = 0; k < n; ++k) error[k] += cell.error[k];
+  }
+  const auto worst = [&](const Cell& cell) {
+    double w = 0;
+    for (size_t k = 0; k < n; ++k)
+      if (error[k] > tolerance * std::abs(total[k])) w = std::max(w, cell.error[k] / std::abs(total[k]));
+    return w;
+  };
+  std::priority_queue<std::pair<double, size_t>> queue;
+  for (size_t c = 0; c < cells_.size(); ++c) queue.emplace(worst(cells_[c]), c);
+  while (!queue.empty() && cells_.size() < kMaxCells) {
+    const auto [was, c] = queue.top();
+    queue.pop();
+    const double now = worst(cells_[c]);
+    if (now < was * (1 - 1e-9)) {  // its integrals have converged meanwhile, or grown
+      if (now > 0) queue.emplace(now, c);
+      continue;
+    }
+    if (!(now > 0) || cells_[c].tiny()) continue;
+    Cell parent = std::move(cells_[c]);
+    const double u = 0.5 * (parent.u0 + parent.u1), v = 0.5 * (parent.v0 + parent.v1);
+    Cell one = parent.alongU ? make(parent.chart, parent.u0, u, parent.v0, parent.v1)
+                             : make(parent.chart, parent.u0, parent.u1, parent.v0, v);
+    Cell two = parent.alongU ? make(parent.chart, u, parent.u1, parent.v0, parent.v1)
+                             : make(parent.chart, parent.u0, parent.u1, v, parent.v1);
+    measure(one), measure(two);
+    for (size_t k = 0; k < n; ++k) {
+      total[k] += one.value[k] + two.value[k] - parent.value[k];
+      error[k] += one.error[k] + two.error[k] - parent.error[k];
+    }
+    cells_[c] = std::move(one);
+    cells_.push_back(std::move(two));
+    queue.emplace(worst(cells_[c]), c);
+    queue.emplace(worst(cells_.back()), cells_.size() - 1);
+  }
+}
+
+Points Cubature::points() const {
+  Points all;
+  all.techniques = problem_.techniques();
+  for (int i = 0; i < all.techniques; ++i) all.outside[static_cast<size_t>(i)] = problem_.outside(i);
+  for (const Cell& cell : cells_) all.list.insert(all.list.end(), cell.points.begin(), cell.points.end());
+  return all;
+}
+
+}  // namespace wardmis

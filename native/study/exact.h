@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What quadrature says of a study case: the integral, the techniques' moments, each strategy's fractions and N Var.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "mis/strategy.h"
+#include "study/problem.h"
+
+namespace wardmis {
+
+struct Exact {
+  Points points;
+  IntegrandMoments moments;
+  double diffusePart = 0;  // L_o = moments.integral + diffusePart
+  double lobeNormalization = 1;
+  double relativeError = 0;  // the largest estimate of the quadrature's
+};
+Exact solve(const Problem& problem);
+
+// One strategy for given costs (null: equal ones).
+struct Prediction {
+  Densities fractions{};
+  double logVariance = 0;  // ln(N Var) for real-valued fractions
+};
+Prediction predict(const Strategy&, const Exact&, const Densities* cost = nullptr);
+
+// The golden file's key `expect`: two techniques by their numbers, more as arrays. N: of "integer_counts".
+nlohmann::json expectJson(const StudyInput&, const Exact&, int n = 256);
+
+}  // namespace wardmis

