@@ -46,6 +46,10 @@ int main(int argc, char** argv) {
         auto* s = app.add_subcommand("compare", "the error of an image against a reference");
         return std::pair{s, wardmis::addCompare(*s)};
       }(),
+      [&] {
+        auto* s = app.add_subcommand("study", "the paper's estimators at one shading point: exactly, and by trials");
+        return std::pair{s, wardmis::addStudy(*s)};
+      }(),
   };
 
   bool json = false;

@@ -12,5 +12,6 @@ using Verb = std::function<int()>;
 Verb addRender(CLI::App& app);
 Verb addInfo(CLI::App& app);
 Verb addCompare(CLI::App& app);
+Verb addStudy(CLI::App& app);
 
 }  // namespace wardmis

@@ -97,7 +97,7 @@ Densities fromLogarithms(const Densities& x, int n) {
 // starts. In the logarithm of their ratio, so that fractions near 0 and 1 are found.
 template <class F>
 Densities minimiseOverSimplex(int n, const F& objective) {
-  constexpr double kSpan = 36;  // e^-36: kLeastFraction
+  constexpr double kSpan = 36;  // fractions down to e^-36 = 2e-16
   const auto exchange = [&](Densities a, int i, int k, double logRatio) {
     const double both = a[at(i)] + a[at(k)];
     // each by its own formula, so that the small one keeps its digits
@@ -158,6 +158,23 @@ double oneSampleVariance(const Densities& a, const Points& points, double mu) {
            return q > 0 ? square(x.f / q - mu) * q : 0;
          }) +
          outside * mu * mu;
+}
+
+// N Var with balance weights: sum_i a_i Var_{p_i}[f/q].
+double balanceVariance(const Densities& a, const Points& points) {
+  const int n = points.techniques;
+  Densities mean{}, variance{};
+  for (const Point& x : points.list) {
+    const double q = mixture(a, x.p, n), share = q > 0 ? x.w * (x.f / q) : 0;
+    for (int i = 0; i < n; ++i) mean[at(i)] += share * x.p[at(i)];
+  }
+  for (const Point& x : points.list) {
+    const double q = mixture(a, x.p, n), h = q > 0 ? x.f / q : 0;
+    for (int i = 0; i < n; ++i) variance[at(i)] += x.w * x.p[at(i)] * square(h - mean[at(i)]);
+  }
+  double sum = 0;
+  for (int i = 0; i < n; ++i) sum += a[at(i)] * (variance[at(i)] + points.outside[at(i)] * square(mean[at(i)]));
+  return sum;
 }
 
 // The matrix of <p_i, p_k> and the vector <f, p_i> under 1/q, scaled by sqrt(a_i a_k): the diagonal is at most 1.
@@ -298,7 +315,7 @@ Densities fractions(Allocation rule, const Points& points, const IntegrandMoment
       });
     case A::kBest:
       return minimiseOverSimplex(
-          n, [&](const Densities& f) { return std::exp(logVariance(W::kBalance, f, points, m)) * meanCost(f, cost, n); });
+          n, [&](const Densities& f) { return balanceVariance(f, points) * meanCost(f, cost, n); });
   }
   if (!costDone)
     for (int i = 0; i < n; ++i) a[at(i)] /= std::sqrt(c(i));

@@ -68,8 +68,6 @@ IntegrandMoments momentsOf(const Points& points);
 // Fractions, which sum to 1. cost: of one sample of each technique, any unit; nothing: equal costs. Equal fractions where
 // the moments say nothing.
 Densities fractions(Allocation, const Points&, const IntegrandMoments&, const Densities* cost = nullptr);
-// The smallest fraction given, so that no technique that the weights rely on is without samples.
-inline constexpr double kLeastFraction = 1e-16;
 
 // w_i/p_i, for weights that are functions of a and p (all but kOptimal); v: of kVarianceAware.
 double weightOverDensity(Weights, int i, int techniques, const Densities& p, const Densities& a, const Densities& v);

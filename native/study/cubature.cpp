@@ -11,7 +11,6 @@ namespace wardmis {
 namespace {
 
 constexpr int kNodes = 15;
-constexpr size_t kMaxCells = 4000;
 constexpr int kMaxDepth = 48;
 
 struct Rule {
@@ -80,7 +79,8 @@ Cubature::Cell Cubature::make(int chart, double u0, double u1, double v0, double
   return cell;
 }
 
-void Cubature::refine(const Integrands& integrands, double tolerance) {
+void Cubature::refine(const Integrands& integrands, double tolerance, size_t more) {
+  const size_t most = cells_.size() + more;
   const auto n = static_cast<size_t>(integrands.count);
   const Rule& r = rule();
   std::vector<double> total(n, 0), h(n);
@@ -128,7 +128,7 @@ void Cubature::refine(const Integrands& integrands, double tolerance) {
   };
   std::priority_queue<std::pair<double, size_t>> queue;
   for (size_t c = 0; c < cells_.size(); ++c) queue.emplace(worst(cells_[c]), c);
-  while (!queue.empty() && cells_.size() < kMaxCells) {
+  while (!queue.empty() && cells_.size() < most) {
     const auto [was, c] = queue.top();
     queue.pop();
     const double now = worst(cells_[c]);

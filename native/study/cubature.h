@@ -19,9 +19,9 @@ class Cubature {
   explicit Cubature(const Problem& problem);
   ~Cubature();
 
-  // Halves cells until the estimated error of each integral is below `tolerance` of its value (or the number of cells
-  // reaches its limit). May be called again with others: what was refined stays so.
-  void refine(const Integrands& integrands, double tolerance);
+  // Halves cells until the estimated error of each integral is below `tolerance` of its value, or `more` cells have
+  // been added. May be called again with others: what was refined stays so.
+  void refine(const Integrands& integrands, double tolerance, size_t more = 4000);
 
   // The nodes, with the techniques' masses outside the domain.
   Points points() const;

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mis/adaptive.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace wardmis {
+
+namespace {
+
+size_t at(int i) { return static_cast<size_t>(i); }
+
+double mixture(const Densities& a, const Densities& p, int n) {
+  double q = 0;
+  for (int k = 0; k < n; ++k) q += a[at(k)] * p[at(k)];
+  return q;
+}
+
+}  // namespace
+
+Point pooledPoint(double f, const Densities& p, const Densities& n, int techniques) {
+  Point x;
+  x.f = f, x.p = p;
+  const double q = mixture(n, p, techniques);
+  x.w = q > 0 ? 1 / q : 0;
+  for (int k = 0; k < techniques; ++k) x.logP[at(k)] = std::log(p[at(k)]);
+  return x;
+}
+
+std::vector<Densities> candidates(int n) {
+  constexpr int kPowers = 5;  // 1, 2, 4, 8, 16
+  std::vector<Densities> list;
+  int combinations = 1;
+  for (int i = 0; i < n; ++i) combinations *= kPowers;
+  for (int c = 0; c < combinations; ++c) {
+    Densities a{};
+    double sum = 0;
+    bool smallestIsOne = false;
+    for (int i = 0, rest = c; i < n; ++i, rest /= kPowers) {
+      a[at(i)] = std::ldexp(1.0, rest % kPowers);
+      smallestIsOne |= rest % kPowers == 0;
+      sum += a[at(i)];
+    }
+    if (!smallestIsOne) continue;  // the same as another one
+    for (int i = 0; i < n; ++i) a[at(i)] /= sum;
+    list.push_back(a);
+  }
+  return list;
+}
+
+Densities autoFractions(const Points& pilot, const Densities* cost, double sigmas) {
+  const int n = pilot.techniques;
+  const std::vector<Densities> all = candidates(n);
+  const auto costOf = [&](const Densities& a) {
+    double c = 0;
+    for (int i = 0; i < n; ++i) c += a[at(i)] * (cost != nullptr ? (*cost)[at(i)] : 1);
+    return c;
+  };
+  const double mu = pilot.integrate([](const Point& x) { return x.f; });
+  const Densities& equal = all.front();
+  // of each candidate: the estimate of (integral f^2/q - mu^2) x cost, and the standard error of its gain over equal
+  // counts, from the spread of the points' contributions
+  double bestValue = 0;
+  const Densities* best = nullptr;
+  const auto outside = [&](const Densities& a) {
+    double sum = 0;
+    for (int i = 0; i < n; ++i) sum += a[at(i)] * pilot.outside[at(i)];
+    return sum * mu * mu * costOf(a);
+  };
+  for (const Densities& a : all) {
+    double value = outside(a), gain = outside(equal) - value, gain2 = 0;
+    for (const Point& x : pilot.list) {
+      const double q = mixture(a, x.p, n), q0 = mixture(equal, x.p, n);
+      if (!(q > 0) || !(q0 > 0)) continue;
+      const double v = x.w * (x.f / q - mu) * (x.f / q - mu) * q * costOf(a);
+      const double v0 = x.w * (x.f / q0 - mu) * (x.f / q0 - mu) * q0 * costOf(equal);
+      value += v, gain += v0 - v, gain2 += (v0 - v) * (v0 - v);
+    }
+    if (best == nullptr) {
+      best = &a, bestValue = value;
+      continue;
+    }
+    const double error = std::sqrt(std::max(0.0, gain2 - gain * gain / std::max<double>(1, double(pilot.list.size()))));
+    if (gain > sigmas * error && value < bestValue) best = &a, bestValue = value;
+  }
+  return *best;
+}
+
+Densities equaliseSecondMoments(const Points& points, Densities a) {
+  const int n = points.techniques;
+  for (int step = 0; step < 30; ++step) {
+    Densities m{}, next{};
+    for (const Point& x : points.list) {
+      const double q = mixture(a, x.p, n);
+      if (!(q > 0)) continue;
+      const double g = x.f / q;
+      for (int i = 0; i < n; ++i) m[at(i)] += x.w * g * g * x.p[at(i)];
+    }
+    double sum = 0, change = 0;
+    for (int i = 0; i < n; ++i) sum += next[at(i)] = a[at(i)] * std::sqrt(m[at(i)]);
+    if (!(sum > 0) || std::isinf(sum)) return a;
+    for (int i = 0; i < n; ++i) {
+      next[at(i)] /= sum;
+      change = std::max(change, std::abs(next[at(i)] - a[at(i)]));
+    }
+    a = next;
+    if (change < 1e-3) break;
+  }
+  return a;
+}
+
+Densities clampFractions(Densities a, int n, double least) {
+  least = std::min(least, 1.0 / n);
+  std::array<bool, kMaxTechniques> raised{};
+  for (bool again = true; again;) {
+    again = false;
+    double rest = 1, free = 0;
+    for (int i = 0; i < n; ++i) raised[at(i)] ? rest -= least : free += a[at(i)];
+    for (int i = 0; i < n; ++i)
+      if (!raised[at(i)] && a[at(i)] * rest < least * free * (1 - 1e-12)) raised[at(i)] = again = true;
+    if (!again)
+      for (int i = 0; i < n; ++i) a[at(i)] = raised[at(i)] ? least : a[at(i)] * rest / free;
+  }
+  return a;
+}
+
+}  // namespace wardmis

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a run can learn from its own samples: the points that pooled samples are, and the fractions of `auto`.
+#pragma once
+
+#include "mis/strategy.h"
+
+namespace wardmis {
+
+// One sample as a point of the pooled estimate of integrals: sum_kj h(X_kj)/sum_l n_l p_l(X_kj), from all techniques'
+// samples, n_l being the number that technique l has drawn.
+Point pooledPoint(double f, const Densities& p, const Densities& n, int techniques);
+
+// The fractions that minimise predicted variance x cost over pilot points, among `candidates`: equal counts, the first of
+// them, unless the gain over these exceeds `sigmas` times its own standard error, estimated from the points.
+Densities autoFractions(const Points& pilot, const Densities* cost, double sigmas = 2);
+
+// Fractions proportional to powers of two, equal ones first: no technique gets under 1/(1 + 16 (n - 1)).
+std::vector<Densities> candidates(int techniques);
+
+// One step of Havran and Sbert's fixed point a_i <- a_i sqrt(M_i), M_i = integral f^2 p_i/q^2, which never raises
+// integral f^2/q; repeated until it rests.
+Densities equaliseSecondMoments(const Points& points, Densities a);
+
+// a, raised to at least `least` at the cost of the others.
+Densities clampFractions(Densities a, int techniques, double least);
+
+}  // namespace wardmis

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/report.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "study/gnuplot.h"
+
+namespace wardmis {
+
+namespace {
+
+using nlohmann::json;
+size_t at(int i) { return static_cast<size_t>(i); }
+
+constexpr double kNormal95 = 1.959963984540054;
+
+// What is derived of a run; NaN where it does not apply.
+struct Derived {
+  double z, variance, low, high, ratio, relativeCost, varianceCost;
+};
+
+Derived derive(const Study& study, const StrategyRun& run) {
+  const double nan = std::nan("");
+  const Estimate& e = run.estimate;
+  Derived d{nan, nan, nan, nan, nan, nan, nan};
+  if (e.count() < 2) return d;
+  d.variance = e.variance();
+  d.z = e.error() > 0 ? (e.mean() - study.exact.moments.integral) / e.error() : 0;
+  d.low = std::max(0.0, d.variance - kNormal95 * e.varianceError()), d.high = d.variance + kNormal95 * e.varianceError();
+  if (run.predictedVariance && *run.predictedVariance > 0) d.ratio = d.variance / *run.predictedVariance;
+  d.varianceCost = d.variance * run.seconds;
+  return d;
+}
+
+// A column of the table: significant digits without padding, '-' where there is nothing.
+std::string number(double x, int digits = 4) { return std::isfinite(x) ? fmt::format("{:.{}g}", x, digits) : "-"; }
+
+// ln(N Var) as a number of any size.
+std::string big(double log) {
+  if (log < 700) return number(std::exp(log));
+  if (std::isinf(log)) return log > 0 ? "infinite" : "0";
+  return fmt::format("1e{:.0f}", log / std::log(10.0));
+}
+
+std::string joined(const Densities& a, int n) {
+  std::string s;
+  for (int i = 0; i < n; ++i) s += (i > 0 ? " " : "") + fmt::format("{:.4g}", a[at(i)]);
+  return s;
+}
+
+json finite(double x) { return std::isfinite(x) ? json(x) : json(); }
+
+std::string title(const StudyInput& in) {
+  std::string s = std::string(name(in.brdf));
+  if (!in.ward())
+    s += fmt::format(", m = {:g}", in.m);
+  else if (in.alphaX == in.alphaY)
+    s += fmt::format(", alpha = {:g}", in.alphaX);
+  else
+    s += fmt::format(", alpha = {:g}, {:g}, phi_o = {:g}", in.alphaX, in.alphaY, in.phiO);
+  s += fmt::format(", theta_o = {:g}, rho_d = {:g}, rho_s = {:g}, R = {:g}, {}", in.thetaO, in.rhoD, in.rhoS, in.R,
+                   in.joint ? "joint" : "split");
+  return s + (in.mode == StudyMode::kPlanar ? ", planar (the paper's 1-D reduction, no radiance)" : "");
+}
+
+// Rows of equal length as aligned columns; the first is on the left, the others on the right.
+std::string aligned(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<size_t> width(rows.front().size(), 0);
+  for (const auto& row : rows)
+    for (size_t c = 0; c < row.size(); ++c) width[c] = std::max(width[c], row[c].size());
+  std::string out;
+  for (const auto& row : rows) {
+    std::string line;
+    for (size_t c = 0; c < row.size(); ++c)
+      line += c == 0 ? fmt::format("{:<{}}", row[c], width[c]) : fmt::format("  {:>{}}", row[c], width[c]);
+    line.erase(line.find_last_not_of(' ') + 1);
+    out += line + "\n";
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string studyTable(const Study& s) {
+  const int n = s.exact.points.techniques;
+  const IntegrandMoments& m = s.exact.moments;
+  std::string out = title(s.input) + "\n";
+  const bool planar = s.input.mode == StudyMode::kPlanar;
+  out += fmt::format("{} = {:.12g}{}   (quadrature, relative error about {:.0e})\n\n",
+                     planar ? "integral of the 1-D reduction + diffuse part" : "L_o", m.integral + s.exact.diffusePart,
+                     s.exact.diffusePart > 0 ? fmt::format(" = {:.12g} + {:.6g} diffuse", m.integral, s.exact.diffusePart)
+                                             : "",
+                     s.exact.relativeError);
+  std::vector<std::vector<std::string>> rows{{"technique", "mu_i,eq", "sigma^2_i,eq", "m^2_i", "outside", "ns/sample"}};
+  for (int i = 0; i < n; ++i)
+    rows.push_back({std::string(name(s.input.techniques[at(i)])), number(m.mean[at(i)], 6), number(m.variance[at(i)], 6),
+                    big(m.logSecond[at(i)]), number(s.exact.points.outside[at(i)], 3),
+                    number(s.costNanoseconds[at(i)], 3)});
+  out += aligned(rows);
+
+  for (size_t k = 0; k < s.runs.size(); ++k) {
+    const TrialSettings& settings = s.settings[k];
+    out += fmt::format("\nN = {} samples, {} trials, seed {}{}\n", settings.samples, settings.trials, settings.seed,
+                       settings.cost ? fmt::format(", costs {}", joined(*settings.cost, n)) : "");
+    rows = {{"strategy", "fractions", "N Var", "counts"}};
+    if (settings.trials > 0)
+      rows[0].insert(rows[0].end(), {"mean", "bias z", "variance", "95 %", "/predicted", "us/trial", "var x s"});
+    for (const StrategyRun& run : s.runs[k]) {
+      std::string counts;
+      for (int i = 0; i < n; ++i) counts += (i > 0 ? " " : "") + std::to_string(run.counts[at(i)]);
+      const bool given = run.strategy->knowledge == Knowledge::kGiven;
+      std::vector<std::string> row{std::string(run.strategy->name), joined(run.exact.fractions, n),
+                                   big(run.exact.logVariance), (given ? "" : "~ ") + counts};
+      if (settings.trials > 0) {
+        const Derived d = derive(s, run);
+        row.insert(row.end(), {number(run.estimate.mean() + s.exact.diffusePart, 6), number(d.z, 2), number(d.variance),
+                               fmt::format("{}..{}", number(d.low, 3), number(d.high, 3)), number(d.ratio),
+                               number(run.seconds * 1e6, 3), number(d.varianceCost, 3)});
+      }
+      rows.push_back(row);
+    }
+    out += aligned(rows);
+  }
+  out += "\nN Var: exact, for real-valued fractions. Where counts follow the samples (~, those of the last pass), it is that of the\n"
+         "exact fractions, the strategy's goal. 'variance' and 'equal' have the same N Var whatever the case (docs/theory.md).\n";
+  return out;
+}
+
+json studyJson(const Study& s) {
+  const int n = s.exact.points.techniques;
+  json measured{{"cost_ns", json::array()}, {"seconds", s.seconds}, {"runs", json::array()}};
+  for (int i = 0; i < n; ++i) measured["cost_ns"].push_back(s.costNanoseconds[at(i)]);
+  for (size_t k = 0; k < s.runs.size(); ++k) {
+    const TrialSettings& settings = s.settings[k];
+    json run{{"samples", settings.samples}, {"trials", settings.trials}, {"seed", settings.seed}};
+    json& list = run["strategies"] = json::object();
+    for (const StrategyRun& r : s.runs[k]) {
+      const Derived d = derive(s, r);
+      json counts = json::array(), a = json::array();
+      for (int i = 0; i < n; ++i) counts.push_back(r.counts[at(i)]), a.push_back(r.exact.fractions[at(i)]);
+      list[std::string(r.strategy->name)] = {
+          {"source", r.strategy->source},
+          {"fractions", a},
+          {"nvar", finite(std::exp(r.exact.logVariance))},
+          {"nvar_log10", finite(r.exact.logVariance / std::log(10.0))},
+          {"counts", counts},
+          {"counts_follow_samples", r.strategy->knowledge != Knowledge::kGiven},
+          {"predicted_variance", r.predictedVariance ? finite(*r.predictedVariance) : json()},
+          {"mean", settings.trials > 0 ? finite(r.estimate.mean()) : json()},
+          {"bias_z", finite(d.z)},
+          {"variance", finite(d.variance)},
+          {"variance_95", {finite(d.low), finite(d.high)}},
+          {"variance_error", settings.trials > 1 ? finite(r.estimate.varianceError()) : json()},
+          {"variance_over_predicted", finite(d.ratio)},
+          {"seconds_per_trial", r.seconds},
+          {"variance_x_seconds", finite(d.varianceCost)}};
+    }
+    measured["runs"].push_back(run);
+  }
+  json j{{"input", toJson(s.input)},
+         {"expect", expectJson(s.input, s.exact, s.settings.empty() ? 256 : s.settings.front().samples)}};
+  if (s.input.mode == StudyMode::kPlanar) j["note"] = "planar: the paper's 1-D reduction, no radiance";
+  if (s.settings.empty() || s.settings.front().trials == 0) return j;
+  j["measured"] = measured;
+  return j;
+}
+
+std::string studyCsv(const Study& s) {
+  std::string out =
+      "strategy,samples,trials,seed,exact_integral,nvar,predicted_variance,mean,bias_z,variance,variance_low95,variance_high95,"
+      "variance_over_predicted,seconds_per_trial\n";
+  const auto cell = [](double x) { return std::isfinite(x) ? fmt::format("{:.17g}", x) : std::string(); };
+  for (size_t k = 0; k < s.runs.size(); ++k)
+    for (const StrategyRun& r : s.runs[k]) {
+      const Derived d = derive(s, r);
+      out += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", r.strategy->name, s.settings[k].samples,
+                         s.settings[k].trials, s.settings[k].seed, cell(s.exact.moments.integral),
+                         cell(std::exp(r.exact.logVariance)), cell(r.predictedVariance.value_or(std::nan(""))),
+                         cell(r.estimate.count() > 0 ? r.estimate.mean() : std::nan("")), cell(d.z), cell(d.variance),
+                         cell(d.low), cell(d.high), cell(d.ratio), cell(r.seconds));
+    }
+  return out;
+}
+
+void plotStudy(const Study& s, const std::string& path) {
+  std::string script;
+  const size_t strategies = s.runs.front().size();
+  // one data block a strategy: samples, N x variance, low, high, seconds, standard deviation, N x predicted variance
+  for (size_t k = 0; k < strategies; ++k) {
+    script += fmt::format("$s{} << END\n", k);
+    for (size_t r = 0; r < s.runs.size(); ++r) {
+      const StrategyRun& run = s.runs[r][k];
+      const Derived d = derive(s, run);
+      const double n = s.settings[r].samples;
+      script += fmt::format("{} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {}\n", n, n * d.variance,
+                            n * std::max(d.low, d.variance * 1e-3), n * d.high, run.seconds, std::sqrt(d.variance),
+                            run.predictedVariance ? fmt::format("{:.9g}", n * *run.predictedVariance) : "NaN");
+    }
+    script += "END\n";
+  }
+  script += fmt::format(
+      "set multiplot title {} noenhanced\nset logscale xy\nset format y '10^{{%T}}'\nset grid lc rgb '#dddddd'\n"
+      "set tmargin 3\nset border lc rgb '#666666'\nset tics font ',9'\n",
+      gnuplotText(title(s.input)));
+  // a colour and a point of its own each; the ones that the paper compares first and thick
+  static constexpr const char* kColours[] = {"#000000", "#d62728", "#ff9896", "#1f77b4", "#aec7e8", "#2ca02c", "#98df8a",
+                                             "#9467bd", "#8c564b", "#c49c94", "#e377c2", "#7f7f7f", "#bcbd22", "#17becf",
+                                             "#9edae5", "#393b79", "#637939", "#8c6d31", "#843c39", "#7b4173", "#3182bd",
+                                             "#e6550d"};
+  const auto line = [&](size_t k) {
+    return fmt::format("lc rgb '{}' lw {}", kColours[k % std::size(kColours)], k < 3 ? "1.8" : "1.2");
+  };
+  const auto style = [&](size_t k) { return fmt::format("{} pt {} ps 0.7", line(k), 1 + k % 13); };
+  script += "set origin 0,0\nset size 0.42,0.95\nset key off noenhanced\nset xlabel 'samples N'\nset ylabel 'N x variance (bars: 95 %; lines: exact)'\nplot ";
+  for (size_t k = 0; k < strategies; ++k)
+    script += fmt::format("{0}$s{1} using 1:7 with lines {3} notitle, $s{1} using 1:2:3:4 with yerrorbars {2} notitle",
+                          k > 0 ? ", " : "", k, style(k), line(k));
+  script += "\nset origin 0.42,0\nset size 0.58,0.95\nset key outside right top font ',9' noenhanced\n"
+            "set xlabel 'seconds of one estimate (drawing and combining)'\nset format x '10^{%T}'\n"
+            "set ylabel 'standard deviation of the estimate'\nplot ";
+  for (size_t k = 0; k < strategies; ++k)
+    script += fmt::format("{}$s{} using 5:6 with linespoints {} title {}", k > 0 ? ", " : "", k, style(k),
+                          gnuplotText(std::string(s.runs[0][k].strategy->name)));
+  script += "\nunset multiplot\n";
+  drawWithGnuplot(path, 1280, 560, script);
+}
+
+}  // namespace wardmis

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Every strategy on every golden case: unbiased, and of the variance that quadrature predicts.
+#include "study/trials.h"
+
+#include <gtest/gtest.h>
+
+#include "golden.h"
+
+namespace wardmis {
+namespace {
+
+using nlohmann::json;
+
+// 55 cases x 22 strategies: with |z| < 4 for the means and five standard errors for the variances, one of 15,000 right
+// checks fails by chance, about one in ten runs of the whole with another seed; this seed is none of them. Sharper lobes
+// are left out: what the cosine technique finds of them is so rare that 10^4 trials may see none of it, and neither mean
+// nor variance tells. The same goes for a variance whose own standard error is a quarter of it.
+TEST(Trials, MeanAndVarianceAreThoseOfQuadrature) {
+  std::vector<const Strategy*> all;
+  for (const Strategy& s : strategies()) all.push_back(&s);
+  int checked = 0, variances = 0;
+  for (const char* kind : {"estimator_cases", "three_technique_cases"})
+    for (const json& c : test::golden()[kind]) {
+      const StudyInput input = studyInputFromJson(c["input"]);
+      if (input.ward() && std::min(input.alphaX, input.alphaY) < 0.01) continue;
+      const std::unique_ptr<Problem> problem = makeProblem(input);
+      const Exact exact = solve(*problem);
+      TrialSettings settings;
+      settings.samples = 32, settings.trials = 10000, settings.seed = 2;
+      for (const StrategyRun& run : runTrials(*problem, exact, all, settings)) {
+        SCOPED_TRACE(c["input"].dump() + " " + std::string(run.strategy->name));
+        const Estimate& e = run.estimate;
+        if (run.strategy->knowledge == Knowledge::kDirect) continue;  // biased by O(1/N), as its source says
+        // its choice between equal densities is one of rounding
+        if (!input.ward() && input.m == 1 && run.strategy->weights == Weights::kMaximum) continue;
+        if (e.varianceError() > 0.25 * e.variance()) continue;
+        EXPECT_LT(std::abs(e.mean() - exact.moments.integral), 4 * e.error() + 1e-13 * exact.moments.integral);
+        ++checked;
+        if (!run.predictedVariance || !(e.variance() > 1e-24 * exact.moments.integral * exact.moments.integral)) continue;
+        EXPECT_LT(std::abs(e.variance() - *run.predictedVariance), 5 * e.varianceError());
+        ++variances;
+      }
+    }
+  EXPECT_GT(checked, 1000);
+  EXPECT_GT(variances, 800);
+}
+
+}  // namespace
+}  // namespace wardmis
