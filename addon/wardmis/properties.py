@@ -8,18 +8,33 @@ from bpy.props import EnumProperty, FloatProperty, IntProperty, PointerProperty
 
 ALLOCATIONS = (
     ("equal", "Equal", "The same number of samples for every technique (Definition 7)"),
-    ("variance", "Variance", "In proportion to each technique's standard deviation, from a pilot (Definition 8)"),
+    ("variance", "Variance", "In proportion to each technique's variance, from a pilot (Definition 8)"),
+    (
+        "standard-deviation",
+        "Standard Deviation",
+        "In proportion to each technique's standard deviation, from a pilot: provably no worse than Equal",
+    ),
     ("second-moment", "Second Moment", "By each technique's second moment, from a pilot (Definition 9)"),
+    ("inverse-variance", "Inverse Variance", "By the variance that each technique would have alone, from a pilot"),
+    ("equalised", "Equalised", "Towards equal second moments of all techniques, from a pilot"),
+    ("representativity", "Representativity", "By each technique's share of the light, from a pilot"),
     ("albedo", "Albedo", "Half to the light, half to the lobes by their albedo, as PBRT and Cycles do"),
+    ("auto", "Automatic", "Least predicted variance over the samples of a pilot; Equal where the gain is not certain"),
 )
-# Definition 8 and 9 measure with a pilot; the others need none
-ALLOCATIONS_WITH_PILOT = {"variance", "second-moment"}
+# They measure with a pilot; the others need none
+ALLOCATIONS_WITH_PILOT = {name for name, *_ in ALLOCATIONS} - {"equal", "albedo"}
 
 WEIGHTS = (
-    ("auto", "Automatic", "The weights that belong to the allocation: nonbalance for Variance, balance for the others"),
+    (
+        "auto",
+        "Automatic",
+        "The weights that belong to the allocation: nonbalance for Variance and Standard Deviation, else balance",
+    ),
     ("balance", "Balance", "Balance heuristic: each technique's density times its share of the samples"),
     ("nonbalance", "Nonbalance", "Each technique's density alone, whatever its share of the samples (Equation 14)"),
     ("power", "Power", "Power heuristic with exponent 2"),
+    ("cutoff", "Cutoff", "Balance among the techniques whose density is at least a tenth of the largest"),
+    ("maximum", "Maximum", "The technique with the largest density counts alone"),
 )
 INTEGRANDS = (
     ("split", "Split", "Specular and diffuse reflection are two integrals that share the light samples"),

@@ -10,6 +10,7 @@
 #include "math/random.h"
 #include "math/warp.h"
 #include "mis/allocation.h"
+#include "mis/candidates.h"
 
 namespace wardmis {
 
@@ -63,9 +64,10 @@ enum Dimension : uint32_t {
 // How a hit is to be sampled.
 struct HitPlan {
   Fractions fractions{};  // of the techniques that this hit has
+  TechniqueMask available = kAllTechniques;
   int samples = 0;        // in all; at most the batch's capacity
   Integrand integrand = Integrand::kSplit;
-  WeightRule weights = WeightRule::kBalance;
+  Weights weights = Weights::kBalance;
   uint32_t pixelKey = 0, vertex = 0;
   uint32_t index = 0;  // of this visit, among the pixel's
   // Index of each technique's first point here: consecutive over the pixel's visits, however many a visit takes, so
@@ -90,10 +92,17 @@ struct HitMoments {
   Moments specular, diffuse;
 };
 
+// What the pilot wants to know of a hit.
+struct HitRecord {
+  HitMoments& moments;
+  CandidateSums* candidates = nullptr;  // where the allocation is `auto`
+  Fractions cost{1, 1, 1};              // of one sample of each technique, for `auto`
+};
+
 // Estimates the direct light at x, in double where T is (sharp lobes). Continuations are kept only if N needs bounces.
 template <uint32_t N, class T>
 Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interaction& x, const HitPlan& plan,
-                Counts& counts, HitMoments* moments, Continuations& continuations) {
+                Counts& counts, HitRecord* record, Continuations& continuations) {
   constexpr bool kSpec = (N & kNeedsSpecular) != 0, kDiff = (N & kNeedsDiffuse) != 0, kPath = (N & kNeedsBounces) != 0;
   const Surface& s = x.surface;
   const bool specular = kSpec && s.hasSpecular(), diffuse = kDiff && s.hasDiffuse();
@@ -132,6 +141,14 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
   const bool vectorised = specular && j >= kVectorised;
   if (vectorised) evaluate(s, wo, batch, j);
 
+  HitMoments* const moments = record != nullptr ? &record->moments : nullptr;
+  const bool withCandidates = record != nullptr && record->candidates != nullptr;
+  CandidateHit candidates(candidatesOf(plan.available));
+  const auto note = [&](Moments& m, Rgb f, const Fractions& p, TechniqueMask used) {
+    m.add(luminance(f), p, mixture.n, used);
+    if (withCandidates) candidates.add(luminance(f), p, mixture.n, used);
+  };
+
   // One sample's share of an emitter's light, by MIS over the techniques of each integral.
   Rgb sum{0, 0, 0};
   const auto add = [&](Technique t, Rgb fs, Rgb fd, Rgb radiance, const Fractions& p, uint8_t visibility) {
@@ -140,18 +157,18 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     if (!split) {
       const Rgb f = (fs + fd) * radiance;
       sum += f * mixture.scale(t, p, kAllTechniques);
-      if (moments != nullptr) moments->specular.add(luminance(f), p, mixture.n, kAllTechniques);
+      if (moments != nullptr) note(moments->specular, f, p, kAllTechniques);
       return;
     }
     if (specular && t != kCosine) {
       const Rgb f = fs * radiance;
       sum += f * mixture.scale(t, p, kSpecularTechniques);
-      if (moments != nullptr) moments->specular.add(luminance(f), p, mixture.n, kSpecularTechniques);
+      if (moments != nullptr) note(moments->specular, f, p, kSpecularTechniques);
     }
     if (diffuse && t != kLobe) {
       const Rgb f = fd * radiance;
       sum += f * mixture.scale(t, p, kDiffuseTechniques);
-      if (moments != nullptr) moments->diffuse.add(luminance(f), p, mixture.n, kDiffuseTechniques);
+      if (moments != nullptr) note(moments->diffuse, f, p, kDiffuseTechniques);
     }
   };
 
@@ -230,6 +247,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     }
   }
   if (moments != nullptr) moments->specular.hits += 1, moments->diffuse.hits += 1;
+  if (withCandidates) candidates.addTo(*record->candidates, record->cost);
   return sum;
 }
 

@@ -15,9 +15,10 @@ struct KernelInput {
   const Sampler& sampler;
   const std::vector<Fractions>* perPixel;  // null: `fractions` everywhere
   Fractions fractions;                     // of a hit, before it is restricted to what the surface has
-  AllocationRule rule;
+  Allocation rule;
   Integrand integrand;
-  WeightRule weights;
+  Weights weights;
+  Fractions cost;  // of one sample of each technique, for `auto`
   int samplesPerHit, depth;
   bool lights;       // the light technique has something to aim at
   bool surfaceRays;  // rays of the surface's techniques can find light

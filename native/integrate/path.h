@@ -25,10 +25,10 @@ inline TechniqueMask techniquesAt(const Surface& s, bool lights, bool surfaceRay
 
 template <uint32_t N>
 Rgb estimate(const RenderScene& scene, const Sampler& sampler, const Interaction& x, const HitPlan& plan,
-             Counts& counts, HitMoments* moments, Continuations& more) {
+             Counts& counts, HitRecord* record, Continuations& more) {
   if ((N & kNeedsSpecular) != 0 && x.surface.needsDouble())
-    return estimateHit<N, double>(scene, sampler, x, plan, counts, moments, more);
-  return estimateHit<N, float>(scene, sampler, x, plan, counts, moments, more);
+    return estimateHit<N, double>(scene, sampler, x, plan, counts, record, more);
+  return estimateHit<N, float>(scene, sampler, x, plan, counts, record, more);
 }
 
 // Radiance reflected at the end of `first`, times its weight. index: of this path among the pixel's; depth: surface

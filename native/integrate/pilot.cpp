@@ -5,8 +5,8 @@
 
 namespace wardmis {
 
-std::vector<Fractions> Pilot::fractions(AllocationRule rule, Integrand integrand, TechniqueMask available,
-                                        float minimum) const {
+std::vector<Fractions> Pilot::fractions(Allocation rule, Integrand integrand, TechniqueMask available,
+                                        float minimum, const Fractions& cost) const {
   constexpr int kRadius = 3;         // 7 x 7 pixels
   constexpr float kSameFace = 0.9f;  // cos of the largest turn of the normal that still is "the same surface"
   std::vector<Fractions> result(pixels.size());
@@ -14,17 +14,29 @@ std::vector<Fractions> Pilot::fractions(AllocationRule rule, Integrand integrand
     for (int x = 0; x < width; ++x) {
       const PilotPixel& center = pixels[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)];
       HitMoments m;
+      CandidateSums sums;
       for (int v = std::max(0, y - kRadius); v <= std::min(height - 1, y + kRadius); ++v)
         for (int u = std::max(0, x - kRadius); u <= std::min(width - 1, x + kRadius); ++u) {
-          const PilotPixel& q = pixels[static_cast<size_t>(v) * static_cast<size_t>(width) + static_cast<size_t>(u)];
+          const size_t neighbour = static_cast<size_t>(v) * static_cast<size_t>(width) + static_cast<size_t>(u);
+          const PilotPixel& q = pixels[neighbour];
           if (q.material != center.material || q.placement != center.placement ||
               dot(q.normal, center.normal) < kSameFace)
             continue;
           m.specular += q.moments.specular;
           m.diffuse += q.moments.diffuse;
+          if (!candidates.empty()) sums += candidates[neighbour];
         }
       Fractions& a = result[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)];
       const TechniqueMask mask = available & center.techniques;
+      if (rule == Allocation::kAuto) {
+        // sum over hits of (integral f)^2, taken as the same for all of them
+        float squares = 0;
+        for (const Moments* each : {&m.specular, &m.diffuse})
+          if (const float mean = each->mean[0] + each->mean[1] + each->mean[2]; each->hits > 0)
+            squares += mean * (mean / each->hits);
+        a = chooseCandidate(sums, squares, mask, cost);
+        continue;
+      }
       a = integrand == Integrand::kJoint ? allocate(rule, m.specular, mask, minimum)
                                          : allocateSplit(rule, m.specular, m.diffuse, mask, minimum);
     }

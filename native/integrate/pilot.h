@@ -18,12 +18,15 @@ struct PilotPixel {
 struct Pilot {
   int width, height;
   std::vector<PilotPixel> pixels;
+  std::vector<CandidateSums> candidates;  // of each pixel, where the allocation is `auto`; else none
 
-  Pilot(int w, int h) : width(w), height(h), pixels(static_cast<size_t>(w) * static_cast<size_t>(h)) {}
+  Pilot(int w, int h, Allocation rule) : width(w), height(h), pixels(static_cast<size_t>(w) * static_cast<size_t>(h)) {
+    if (rule == Allocation::kAuto) candidates.resize(pixels.size());
+  }
 
   // Fractions per pixel of the techniques that the scene has (`available`).
-  std::vector<Fractions> fractions(AllocationRule rule, Integrand integrand, TechniqueMask available,
-                                   float minimum) const;
+  std::vector<Fractions> fractions(Allocation rule, Integrand integrand, TechniqueMask available,
+                                   float minimum, const Fractions& cost) const;
 };
 
 }  // namespace wardmis

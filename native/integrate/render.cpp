@@ -193,6 +193,7 @@ FilmBuffer renderInArena(const Scene& scene, const RenderSettings& settings, Sta
                     settings.allocation,
                     settings.integrand,
                     settings.weightRule(),
+                    settings.cost,
                     settings.samplesPerHit,
                     settings.integrator == Integrator::kPath ? settings.maxDepth : 1,
                     emitters.any(),
@@ -201,18 +202,18 @@ FilmBuffer renderInArena(const Scene& scene, const RenderSettings& settings, Sta
                     film.y0};
   // Before the pilot, and for `equal`: the same count for every technique of an integral.
   const TechniqueMask available = stats.techniques;
-  input.fractions = joint ? allocate(AllocationRule::kEqual, {}, available, 0)
-                          : allocateSplit(AllocationRule::kEqual, {}, {}, available, 0);
+  input.fractions = joint ? allocate(Allocation::kEqual, {}, available, 0)
+                          : allocateSplit(Allocation::kEqual, {}, {}, available, 0);
 
   Run run(settings, observer, buffer, input, tileKernel(stats.kernel));
   if (observer.started) observer.started(stats);
   const double cpuStart = cpuSeconds();
   std::vector<Fractions> perPixel;
   if (stats.allocated) {
-    Pilot pilot(buffer.width, buffer.height);
+    Pilot pilot(buffer.width, buffer.height, settings.allocation);
     run.until(pilotSpp, &pilot);
     if (!run.stopped()) {
-      perPixel = pilot.fractions(settings.allocation, settings.integrand, available, settings.minFraction);
+      perPixel = pilot.fractions(settings.allocation, settings.integrand, available, settings.minFraction, settings.cost);
       input.perPixel = &perPixel;
     }
     stats.pilotSeconds = run.seconds();

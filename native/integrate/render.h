@@ -20,8 +20,8 @@ std::string_view name(SamplerType);
 std::string_view name(FilterType);
 
 struct RenderSettings {
-  AllocationRule allocation = AllocationRule::kSecondMoment;
-  std::optional<WeightRule> weights;  // none: what the paper pairs with the allocation
+  Allocation allocation = Allocation::kSecondMoment;
+  std::optional<Weights> weights;  // none: what the paper pairs with the allocation
   Integrand integrand = Integrand::kSplit;
   Integrator integrator = Integrator::kPath;
   SamplerType sampler = SamplerType::kSobol;
@@ -30,12 +30,13 @@ struct RenderSettings {
   int samplesPerHit = 3;
   uint32_t pilotSpp = 4;
   float minFraction = 0.1f;
+  Fractions cost{1, 1, 1};  // of a lobe, cosine and light sample, for `auto`
   int maxDepth = 8;  // surface hits of a path
   uint64_t seed = 0;
   int threads = 0;  // 0: all
   bool generalKernel = false;
 
-  WeightRule weightRule() const { return weights.value_or(paperWeights(allocation)); }
+  Weights weightRule() const { return weights.value_or(paperWeights(allocation)); }
 };
 
 struct Statistics {

@@ -10,7 +10,8 @@ namespace wardmis {
 // Radiance along one camera ray.
 template <uint32_t N>
 Rgb cameraSample(const KernelInput& in, const Ray& ray, uint32_t pixelKey, uint32_t sample,
-                 const Fractions* pixelFractions, Pixel& pixel, PilotPixel* pilot, Counts& counts) {
+                 const Fractions* pixelFractions, Pixel& pixel, PilotPixel* pilot, CandidateSums* candidates,
+                 Counts& counts) {
   const RenderScene& world = in.scene;
   ++counts.cameraRays;
   const Hit hit = world.accel.intersect(ray);
@@ -41,7 +42,8 @@ Rgb cameraSample(const KernelInput& in, const Ray& ray, uint32_t pixelKey, uint3
   if (mask == 0 || !(s.hasDiffuse() || s.hasSpecular())) return sum;
   HitPlan plan;
   const Fractions& shares = pixelFractions != nullptr && covers(*pixelFractions, mask) ? *pixelFractions : in.fractions;
-  plan.fractions = restrict(in.rule == AllocationRule::kAlbedo ? albedoFractions(s) : shares, mask);
+  plan.fractions = restrict(in.rule == Allocation::kAlbedo ? albedoFractions(s) : shares, mask);
+  plan.available = mask;
   plan.samples = in.samplesPerHit;
   plan.integrand = in.integrand;
   plan.weights = in.weights;
@@ -50,7 +52,12 @@ Rgb cameraSample(const KernelInput& in, const Ray& ray, uint32_t pixelKey, uint3
   plan.firstPoint = pixel.techniques;
   Continuations more;
   const std::array<uint64_t, kTechniques> before = counts.samples;
-  sum += estimate<N>(world, in.sampler, x, plan, counts, pilot != nullptr ? &pilot->moments : nullptr, more);
+  if (pilot != nullptr) {
+    HitRecord record{pilot->moments, candidates, in.cost};
+    sum += estimate<N>(world, in.sampler, x, plan, counts, &record, more);
+  } else {
+    sum += estimate<N>(world, in.sampler, x, plan, counts, nullptr, more);
+  }
   for (size_t i = 0; i < kTechniques; ++i) pixel.techniques[i] += static_cast<uint32_t>(counts.samples[i] - before[i]);
   if constexpr ((N & kNeedsBounces) != 0)
     for (int k = 0; k < more.count; ++k)
@@ -70,13 +77,14 @@ void renderTile(const KernelInput& in, const Tile& tile, FilmBuffer& film, Pilot
       const size_t index = static_cast<size_t>(y) * static_cast<size_t>(film.width) + static_cast<size_t>(x);
       Pixel& pixel = film.pixels[index];
       const Fractions* fractions = in.perPixel != nullptr ? &(*in.perPixel)[index] : nullptr;
+      CandidateSums* candidates = pilot != nullptr && !pilot->candidates.empty() ? &pilot->candidates[index] : nullptr;
       PilotPixel* pilotPixel = pilot != nullptr ? &pilot->pixels[index] : nullptr;
       for (uint32_t s = tile.firstSample; s < tile.firstSample + tile.samples; ++s) {
         const Vec2f offset = in.filter.sample(in.sampler.get2D(key, kFilmPoint, s));
         const Vec2f lens = in.camera.needsLens() ? in.sampler.get2D(key, kLensPoint, s) : Vec2f{};
         const Ray ray =
             in.camera.ray(static_cast<float>(px) + 0.5f + offset.x, static_cast<float>(py) + 0.5f + offset.y, lens);
-        const Rgb value = cameraSample<N>(in, ray, key, s, fractions, pixel, pilotPixel, counts) * exposure;
+        const Rgb value = cameraSample<N>(in, ray, key, s, fractions, pixel, pilotPixel, candidates, counts) * exposure;
         if (counts.rare.admit(value)) pixel.add(value);
       }
     }

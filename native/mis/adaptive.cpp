@@ -27,18 +27,18 @@ Point pooledPoint(double f, const Densities& p, const Densities& n, int techniqu
   return x;
 }
 
-std::vector<Densities> candidates(int n) {
-  constexpr int kPowers = 5;  // 1, 2, 4, 8, 16
+std::vector<Densities> candidates(int n, double step, int power) {
   std::vector<Densities> list;
   int combinations = 1;
-  for (int i = 0; i < n; ++i) combinations *= kPowers;
+  const int levels = power + 1;
+  for (int i = 0; i < n; ++i) combinations *= levels;
   for (int c = 0; c < combinations; ++c) {
     Densities a{};
     double sum = 0;
     bool smallestIsOne = false;
-    for (int i = 0, rest = c; i < n; ++i, rest /= kPowers) {
-      a[at(i)] = std::ldexp(1.0, rest % kPowers);
-      smallestIsOne |= rest % kPowers == 0;
+    for (int i = 0, rest = c; i < n; ++i, rest /= levels) {
+      a[at(i)] = std::pow(step, rest % levels);
+      smallestIsOne |= rest % levels == 0;
       sum += a[at(i)];
     }
     if (!smallestIsOne) continue;  // the same as another one
@@ -50,7 +50,7 @@ std::vector<Densities> candidates(int n) {
 
 Densities autoFractions(const Points& pilot, const Densities* cost, double sigmas) {
   const int n = pilot.techniques;
-  const std::vector<Densities> all = candidates(n);
+  const std::vector<Densities> all = candidates(n, 2, 4);  // down to 1/17 of two techniques
   const auto costOf = [&](const Densities& a) {
     double c = 0;
     for (int i = 0; i < n; ++i) c += a[at(i)] * (cost != nullptr ? (*cost)[at(i)] : 1);

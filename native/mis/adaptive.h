@@ -14,8 +14,8 @@ Point pooledPoint(double f, const Densities& p, const Densities& n, int techniqu
 // them, unless the gain over these exceeds `sigmas` times its own standard error, estimated from the points.
 Densities autoFractions(const Points& pilot, const Densities* cost, double sigmas = 2);
 
-// Fractions proportional to powers of two, equal ones first: no technique gets under 1/(1 + 16 (n - 1)).
-std::vector<Densities> candidates(int techniques);
+// Fractions proportional to powers of `step` up to the one given, equal ones first.
+std::vector<Densities> candidates(int techniques, double step, int power);
 
 // One step of Havran and Sbert's fixed point a_i <- a_i sqrt(M_i), M_i = integral f^2 p_i/q^2, which never raises
 // integral f^2/q; repeated until it rests.

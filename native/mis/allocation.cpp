@@ -4,47 +4,56 @@
 #include <algorithm>
 #include <bit>
 
+#include "mis/adaptive.h"
+
 namespace wardmis {
 
-Fractions allocate(AllocationRule rule, const Moments& m, TechniqueMask used, float minimum) {
+namespace {
+
+// What the rule reads of technique i must be a number above zero: a technique that has only seen zeros has no variance,
+// which would give it everything.
+bool says(Allocation rule, const Moments& m, int i) {
+  const auto usable = [&](float x) { return x > 0 && std::isfinite(x / m.hits); };
+  switch (rule) {
+    case Allocation::kSecondMoment:
+      return usable(m.second[i]);
+    case Allocation::kInverseVariance:
+      return usable(m.second[i]) && usable(m.mean[i]);
+    case Allocation::kRepresentativity:
+      return usable(m.mean[i]);
+    case Allocation::kEqualised:
+      return usable(m.square[i]);
+    default:
+      return usable(m.square[i]) && std::isfinite(m.mean[i] / m.hits);
+  }
+}
+
+}  // namespace
+
+Fractions allocate(Allocation rule, const Moments& m, TechniqueMask used, float minimum) {
   const int n = std::popcount(used);
   Fractions a{};
-  const auto each = [&](auto&& f) {
-    for (int i = 0; i < kTechniques; ++i)
-      if ((used >> i & 1u) != 0) f(i);
-  };
-  const auto equal = [&] { each([&](int i) { a[i] = 1.0f / static_cast<float>(n); }); };
-  if (n == 0) return a;
-  if (!needsMoments(rule) || !(m.hits > 0)) return equal(), a;
+  std::array<int, kTechniques> which{};  // the techniques used
+  for (int i = 0, k = 0; i < kTechniques; ++i)
+    if ((used >> i & 1u) != 0) which[k++] = i;
+  for (int k = 0; k < n; ++k) a[which[k]] = 1.0f / static_cast<float>(n);
+  if (n == 0 || !needsMoments(rule) || !(m.hits > 0)) return a;
 
-  float sum = 0;
-  bool usable = true;
-  each([&](int i) {
-    if (rule == AllocationRule::kVariance) {
-      const float mean = m.mean[i] / m.hits, sigma2 = m.square[i] / m.hits - mean * mean;
-      usable &= m.square[i] > 0 && std::isfinite(sigma2);
-      a[i] = std::max(0.0f, sigma2);
-    } else {
-      usable &= m.second[i] > 0 && std::isfinite(m.second[i]);
-      a[i] = m.hits / m.second[i];
-    }
-    sum += a[i];
-  });
-  if (!usable || !(sum > 0) || !std::isfinite(sum)) return equal(), a;
-
-  // Clamp: what lies under the minimum is raised to it, at the cost of the others in proportion.
-  const float floor = std::min(minimum, 1.0f / static_cast<float>(n));
-  TechniqueMask raised = 0;
-  for (bool again = true; again;) {
-    again = false;
-    float free = 0;
-    each([&](int i) { free += (raised >> i & 1u) != 0 ? 0 : a[i]; });
-    const float rest = 1 - floor * static_cast<float>(std::popcount(raised));
-    each([&](int i) {
-      if ((raised >> i & 1u) == 0 && a[i] * rest < floor * free * (1 - 1e-6f)) raised |= 1u << i, again = true;
-    });
-    if (!again) each([&](int i) { a[i] = (raised >> i & 1u) != 0 ? floor : a[i] * rest / free; });
+  IntegrandMoments known;
+  known.techniques = n;
+  const double hits = m.hits;
+  for (int k = 0; k < n; ++k) known.integral += m.mean[which[k]] / hits;
+  for (int k = 0; k < n; ++k) {
+    const int i = which[k];
+    if (!says(rule, m, i)) return a;
+    const double mean = m.mean[i] / hits, square = m.square[i] / hits, second = m.second[i] / hits;
+    known.mean[k] = mean, known.square[k] = square, known.variance[k] = std::max(0.0, square - mean * mean);
+    known.logSecond[k] = std::log(second);
+    // of a pilot, m^2 may come out below mu^2: then a thousandth of m^2, not infinitely good
+    known.variancePrim[k] = std::max(second - known.integral * known.integral, 1e-3 * second);
   }
+  const Densities shares = clampFractions(fractions(rule, known), n, double(minimum));
+  for (int k = 0; k < n; ++k) a[which[k]] = static_cast<float>(shares[k]);
   return a;
 }
 
@@ -55,7 +64,7 @@ Fractions combineSplit(const Fractions& specular, const Fractions& diffuse) {
   return a;
 }
 
-Fractions allocateSplit(AllocationRule rule, const Moments& specular, const Moments& diffuse, TechniqueMask available,
+Fractions allocateSplit(Allocation rule, const Moments& specular, const Moments& diffuse, TechniqueMask available,
                         float minimum) {
   const auto one = [&](const Moments& m, Technique own, TechniqueMask used) {
     return (available & maskOf(own)) != 0 ? allocate(rule, m, available & used, minimum) : Fractions{};
@@ -75,14 +84,6 @@ Fractions restrict(const Fractions& a, TechniqueMask available) {
   return r;
 }
 
-std::string_view name(AllocationRule r) {
-  constexpr std::string_view names[] = {"equal", "variance", "second-moment", "albedo"};
-  return names[static_cast<int>(r)];
-}
-std::string_view name(WeightRule r) {
-  constexpr std::string_view names[] = {"balance", "nonbalance", "power"};
-  return names[static_cast<int>(r)];
-}
 std::string_view name(Integrand r) {
   constexpr std::string_view names[] = {"split", "joint"};
   return names[static_cast<int>(r)];

@@ -2,40 +2,27 @@
 // How the samples of a hit are shared between techniques, as data: expected counts n_i and weight coefficients a_i.
 // The multi-sample estimator (Veach 1995; the paper's Eq. 3) of the integral of f, with X_ij of density p_i:
 //   F = sum_i 1/n_i sum_j w_i(X_ij) f(X_ij)/p_i(X_ij),   w_i = (a_i p_i)^beta / sum_k (a_k p_k)^beta
-// Balance weights are a = n, beta = 1; the paper's Eq. 14 is a = 1 ("nonbalance"); the power heuristic a = n, beta = 2.
+// Balance weights are a = n, beta = 1; the paper's Eq. 14 is a = 1 ("nonbalance"); the power heuristic a = n, beta = 2;
+// cutoff and maximum are rules.h's.
 // n_i is an expected count: the actual one is n_i rounded up or down at random (systematicCounts), independently of the
 // samples, so that F is unbiased for any n_i > 0.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string_view>
 
 #include "mis/moments.h"
+#include "mis/rules.h"
 
 namespace wardmis {
 
-enum class AllocationRule : uint8_t {
-  kEqual,         // Def. 7: n_i = N/n
-  kVariance,      // Def. 8: n_i proportional to sigma^2_i,eq
-  kSecondMoment,  // Def. 9: n_i proportional to 1/m^2_i
-  kAlbedo,  // half to the light, half to the lobes by albedo: the usual path tracer's one BSDF and one light sample
-};
-enum class WeightRule : uint8_t { kBalance, kNonbalance, kPower };
 enum class Integrand : uint8_t { kSplit, kJoint };
-
-// The weights that the paper pairs with a rule.
-constexpr WeightRule paperWeights(AllocationRule rule) {
-  return rule == AllocationRule::kVariance ? WeightRule::kNonbalance : WeightRule::kBalance;
-}
-// Whether the rule asks for moments, that is, for a pilot.
-constexpr bool needsMoments(AllocationRule rule) {
-  return rule == AllocationRule::kVariance || rule == AllocationRule::kSecondMoment;
-}
 
 // Fractions of one integrand's techniques (those in `used`), from its moments; they sum to 1 over `used`.
 // Equal where the moments say nothing (a zero, not finite). Clamped to [minimum, 1 - (n-1) minimum].
-Fractions allocate(AllocationRule rule, const Moments& m, TechniqueMask used, float minimum);
+Fractions allocate(Allocation rule, const Moments& m, TechniqueMask used, float minimum);
 
 // Fractions of a hit with two integrands, each with the same budget and its own fractions of it: lobe and light for the
 // specular one, cosine and light for the diffuse one. Light samples serve both, so the larger of the two demands is
@@ -44,7 +31,7 @@ Fractions combineSplit(const Fractions& specular, const Fractions& diffuse);
 
 // The fractions of split integrands, of the techniques `available`; an integrand without its own technique asks for
 // nothing.
-Fractions allocateSplit(AllocationRule rule, const Moments& specular, const Moments& diffuse, TechniqueMask available,
+Fractions allocateSplit(Allocation rule, const Moments& specular, const Moments& diffuse, TechniqueMask available,
                         float minimum);
 
 // Whether every technique of `available` gets samples. A hit that has more techniques than its pixel's fractions know
@@ -82,37 +69,52 @@ struct Mixture {
   Fractions n{};         // expected counts n_i
   Fractions a{};         // coefficients a_i; 0 for a technique that takes no samples
   Fractions aOverN{};    // a_i/n_i
-  bool squared = false;  // beta = 2
+  Weights rule = Weights::kBalance;
 
   Mixture() = default;
-  Mixture(const Fractions& fractions, int samples, WeightRule rule) : squared(rule == WeightRule::kPower) {
+  Mixture(const Fractions& fractions, int samples, Weights weights) : rule(weights) {
     for (int i = 0; i < kTechniques; ++i) {
       n[i] = fractions[i] * static_cast<float>(samples);
       if (!(n[i] > 0)) continue;
-      a[i] = rule == WeightRule::kNonbalance ? 1 : n[i];
-      aOverN[i] = rule == WeightRule::kNonbalance ? 1 / n[i] : 1;
+      a[i] = rule == Weights::kNonbalance ? 1 : n[i];
+      aOverN[i] = rule == Weights::kNonbalance ? 1 / n[i] : 1;
     }
   }
 
   // w_i / (n_i p_i): what f is to be multiplied by for a sample of technique i, where `used` techniques share the
   // integrand and p holds their densities at the sample (p[i] > 0).
   float scale(int i, const Fractions& p, TechniqueMask used) const {
-    float sum = 0, sum2 = 0;
+    Fractions ap{};
+    float sum = 0;
     for (int k = 0; k < kTechniques; ++k) {
-      const float ap = (used >> k & 1u) != 0 ? a[k] * p[k] : 0.0f;
-      sum += ap;
-      if (squared) sum2 += square(ap / (a[i] * p[i]));  // as ratios: p^2 overflows
+      ap[k] = (used >> k & 1u) != 0 ? a[k] * p[k] : 0.0f;
+      sum += ap[k];
     }
     if (!(sum > 0)) return 0;  // every density underflowed: so did f
-    return squared ? 1 / (sum2 * n[i] * p[i]) : aOverN[i] / sum;
+    return rule <= Weights::kNonbalance ? aOverN[i] / sum : scaleOfHeuristic(i, p, ap);
   }
 
  private:
-  static constexpr float square(float x) { return x * x; }
+  // The heuristics that give more to the larger densities; ap: a_k p_k.
+  float scaleOfHeuristic(int i, const Fractions& p, const Fractions& ap) const {
+    float top = 0, sum = 0;
+    for (int k = 0; k < kTechniques; ++k) top = std::max(top, ap[k]);
+    if (rule == Weights::kPower) {
+      for (int k = 0; k < kTechniques; ++k) sum += (ap[k] / ap[i]) * (ap[k] / ap[i]);  // as ratios: p^2 overflows
+      return 1 / (sum * n[i] * p[i]);
+    }
+    if (rule == Weights::kCutoff) {
+      const float least = static_cast<float>(kCutoffRatio) * top;
+      if (ap[i] < least) return 0;
+      for (int k = 0; k < kTechniques; ++k) sum += ap[k] >= least ? ap[k] : 0;
+      return 1 / sum;
+    }
+    for (int k = 0; k < kTechniques; ++k)  // the largest takes all; of equal ones, the first
+      if (ap[k] > ap[i] || (k < i && ap[k] == ap[i])) return 0;
+    return 1 / (n[i] * p[i]);
+  }
 };
 
-std::string_view name(AllocationRule);
-std::string_view name(WeightRule);
 std::string_view name(Integrand);
 
 }  // namespace wardmis

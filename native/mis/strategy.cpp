@@ -40,7 +40,7 @@ constexpr Strategy kStrategies[] = {
     {"optimal-progressive", A::kEqual, W::kOptimal, K::kProgressive, "Kondapaneni et al. 2019"},
     {"optimal-direct", A::kEqual, W::kOptimal, K::kDirect, "Kondapaneni et al. 2019"},
     {"best", A::kBest, W::kBalance, K::kGiven, "the minimum, found numerically"},
-    {"auto", A::kBest, W::kBalance, K::kPilot, "ours"},
+    {"auto", A::kAuto, W::kBalance, K::kPilot, "ours"},
 };
 
 double square(double x) { return x * x; }
@@ -222,6 +222,17 @@ Densities secondOrder(const Points& points) {
 
 }  // namespace
 
+std::string_view name(Allocation a) {
+  constexpr std::string_view names[] = {"equal",     "variance", "standard-deviation", "second-moment",
+                                        "inverse-variance", "equalised", "linear", "second-order",
+                                        "representativity", "best", "albedo", "auto"};
+  return names[static_cast<int>(a)];
+}
+std::string_view name(Weights w) {
+  constexpr std::string_view names[] = {"balance", "nonbalance", "power", "cutoff", "maximum", "variance-aware", "optimal"};
+  return names[static_cast<int>(w)];
+}
+
 std::span<const Strategy> strategies() { return kStrategies; }
 
 const Strategy* findStrategy(std::string_view name) {
@@ -262,63 +273,69 @@ IntegrandMoments momentsOf(const Points& points) {
   return m;
 }
 
-Densities fractions(Allocation rule, const Points& points, const IntegrandMoments& m, const Densities* cost) {
-  const int n = points.techniques;
+Densities fractions(Allocation rule, const IntegrandMoments& m, const Densities* cost) {
+  const int n = m.techniques;
   Densities a{}, x{};
   const auto c = [&](int i) { return cost != nullptr ? (*cost)[at(i)] : 1.0; };
-  bool costDone = false;
   switch (rule) {
-    case A::kEqual:
-      return equalFractions(n);
     case A::kVariance:
       for (int i = 0; i < n; ++i) a[at(i)] = m.variance[at(i)] / c(i);
-      costDone = true;
       break;
     case A::kStandardDeviation:
       for (int i = 0; i < n; ++i) a[at(i)] = std::sqrt(m.variance[at(i)] / c(i));
-      costDone = true;
       break;
     case A::kSecondMoment:
       for (int i = 0; i < n; ++i) {
         if (m.logSecond[at(i)] == -kInfinity) return equalFractions(n);
         x[at(i)] = -m.logSecond[at(i)] - std::log(c(i));
       }
-      a = fromLogarithms(x, n);
-      costDone = true;
-      break;
+      return fromLogarithms(x, n);
     case A::kInverseVariance:
       for (int i = 0; i < n; ++i) {
         if (!(m.variancePrim[at(i)] > 0)) return equalFractions(n);
         x[at(i)] = std::isinf(m.variancePrim[at(i)]) ? -m.logSecond[at(i)] : -std::log(m.variancePrim[at(i)]);
         x[at(i)] -= std::log(c(i));
       }
-      a = fromLogarithms(x, n);
-      costDone = true;
-      break;
+      return fromLogarithms(x, n);
     case A::kRepresentativity:
-      a = m.mean;
+      for (int i = 0; i < n; ++i) a[at(i)] = m.mean[at(i)] / std::sqrt(c(i));
       break;
-    case A::kSecondOrder:
-      if (n != 2) return equalFractions(n);
-      a = secondOrder(points);
+    case A::kEqualised:
+      for (int i = 0; i < n; ++i) a[at(i)] = std::sqrt(m.square[at(i)] / c(i));
       break;
-    case A::kLinear: {
-      const Densities equal = equalFractions(n);
-      const Eigen::VectorXd solution = solve(normalEquations(points, equal));
-      for (int i = 0; i < n; ++i) a[at(i)] = std::max(0.0, solution(i));  // scaled by sqrt(1/n) and mu alike
+    default:
       break;
-    }
+  }
+  return normalise(a, n) ? a : equalFractions(n);
+}
+
+Densities fractions(Allocation rule, const Points& points, const IntegrandMoments& m, const Densities* cost) {
+  const int n = points.techniques;
+  Densities a{};
+  switch (rule) {
     case A::kEqualised:
       return minimiseOverSimplex(n, [&](const Densities& f) {
         return (oneSampleVariance(f, points, m.integral) + (cost != nullptr ? square(m.integral) : 0)) *
                meanCost(f, cost, n);
       });
     case A::kBest:
+    case A::kAuto:
       return minimiseOverSimplex(
           n, [&](const Densities& f) { return balanceVariance(f, points) * meanCost(f, cost, n); });
+    case A::kSecondOrder:
+      if (n != 2) return equalFractions(n);
+      a = secondOrder(points);
+      break;
+    case A::kLinear: {
+      const Eigen::VectorXd solution = solve(normalEquations(points, equalFractions(n)));
+      for (int i = 0; i < n; ++i) a[at(i)] = std::max(0.0, solution(i));  // scaled by sqrt(1/n) and mu alike
+      break;
+    }
+    default:
+      return fractions(rule, m, cost);
   }
-  if (!costDone)
-    for (int i = 0; i < n; ++i) a[at(i)] /= std::sqrt(c(i));
+  if (cost != nullptr)
+    for (int i = 0; i < n; ++i) a[at(i)] /= std::sqrt((*cost)[at(i)]);
   return normalise(a, n) ? a : equalFractions(n);
 }
 
@@ -343,9 +360,9 @@ double weightOverDensity(Weights rule, int i, int n, const Densities& p, const D
     case W::kCutoff: {
       double top = 0, sum = 0;
       for (int k = 0; k < n; ++k) top = std::max(top, a[at(k)] * p[at(k)]);
-      if (!(own > 0) || own < 0.1 * top) return 0;
+      if (!(own > 0) || own < kCutoffRatio * top) return 0;
       for (int k = 0; k < n; ++k)
-        if (a[at(k)] * p[at(k)] >= 0.1 * top) sum += a[at(k)] * p[at(k)];
+        if (a[at(k)] * p[at(k)] >= kCutoffRatio * top) sum += a[at(k)] * p[at(k)];
       return a[at(i)] / sum;
     }
     case W::kMaximum: {

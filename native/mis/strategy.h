@@ -8,31 +8,9 @@
 #include <string_view>
 
 #include "mis/points.h"
+#include "mis/rules.h"
 
 namespace wardmis {
-
-enum class Allocation : uint8_t {
-  kEqual,              // Def. 7
-  kVariance,           // Def. 8: sigma^2_i,eq
-  kStandardDeviation,  // Sbert et al. 2018: sigma_i,eq
-  kSecondMoment,       // Def. 9: 1/m^2_i
-  kInverseVariance,    // 1/(m^2_i - mu^2)
-  kEqualised,          // Havran and Sbert 2014: equal second moments, the minimum of integral f^2/q
-  kLinear,             // Sbert and Szirmay-Kalos 2023: least-squares fit of the mixture to f, a linear system
-  kSecondOrder,        // Lu et al. 2013: one Newton step from equal counts; two techniques
-  kRepresentativity,   // after Pajot et al. 2011: mu_i,eq, the technique's share of the integral
-  kBest,               // the minimum of N Var with balance weights, found numerically: the yardstick
-};
-
-enum class Weights : uint8_t {
-  kBalance,        // a_i p_i
-  kNonbalance,     // p_i (Eq. 14)
-  kPower,          // (a_i p_i)^2 (Veach 1995)
-  kCutoff,         // a_i p_i, dropped below a tenth of the largest (Veach 1995)
-  kMaximum,        // the largest a_i p_i takes all (Veach 1995)
-  kVarianceAware,  // v_i a_i p_i, v_i = m^2_i/(m^2_i - mu^2) (Grittmann et al. 2019)
-  kOptimal,        // Kondapaneni et al. 2019, for given fractions
-};
 
 // How the numbers that a strategy needs are got in a run.
 enum class Knowledge : uint8_t {
@@ -57,7 +35,8 @@ struct IntegrandMoments {
   int techniques = 0;
   double integral = 0;      // mu
   Densities mean{};         // mu_i,eq = integral g p_i, g = f/sum_k p_k
-  Densities variance{};     // sigma^2_i,eq
+  Densities square{};       // integral g^2 p_i
+  Densities variance{};     // sigma^2_i,eq = square - mean^2
   Densities logSecond{};    // ln m^2_i, m^2_i = integral f^2/p_i
   Densities variancePrim{}; // m^2_i - mu^2 without its cancellation; infinite beyond double's range
 
@@ -65,8 +44,15 @@ struct IntegrandMoments {
 };
 IntegrandMoments momentsOf(const Points& points);
 
-// Fractions, which sum to 1. cost: of one sample of each technique, any unit; nothing: equal costs. Equal fractions where
-// the moments say nothing.
+// Whether an allocation follows from these moments alone; of the equalised one, its first step from equal counts does.
+constexpr bool followsFromMoments(Allocation a) {
+  return a != Allocation::kLinear && a != Allocation::kSecondOrder && a != Allocation::kBest && a != Allocation::kAuto;
+}
+// Fractions, which sum to 1, from moments alone. cost: of one sample of each technique, any unit; nothing: equal costs.
+// Equal fractions where the moments say nothing.
+Densities fractions(Allocation, const IntegrandMoments&, const Densities* cost = nullptr);
+
+// The same from points, for every allocation.
 Densities fractions(Allocation, const Points&, const IntegrandMoments&, const Densities* cost = nullptr);
 
 // w_i/p_i, for weights that are functions of a and p (all but kOptimal); v: of kVarianceAware.

@@ -57,8 +57,9 @@ RenderSettings quick() {
 TEST(Render, DoesNotDependOnThreads) {
   const Scene scene = mixedScene();
   for (SamplerType sampler : {SamplerType::kIndependent, SamplerType::kStratified, SamplerType::kSobol})
-    for (AllocationRule rule :
-         {AllocationRule::kEqual, AllocationRule::kVariance, AllocationRule::kSecondMoment, AllocationRule::kAlbedo}) {
+    for (Allocation rule :
+         {Allocation::kEqual, Allocation::kVariance, Allocation::kSecondMoment, Allocation::kAlbedo,
+          Allocation::kAuto}) {
       RenderSettings s = quick();
       s.sampler = sampler;
       s.allocation = rule;
@@ -112,14 +113,17 @@ TEST(Render, EveryAllocationAgrees) {
   RenderSettings s = quick();
   s.sampler = SamplerType::kIndependent;
   s.spp = 2048;
-  s.allocation = AllocationRule::kAlbedo;
+  s.allocation = Allocation::kAlbedo;
   const auto [reference, referenceVariance] = imageMean(renderScene(scene, s));
   s.spp = 96;
   s.seed = 5;
   s.samplesPerHit = 5;
-  for (AllocationRule rule :
-       {AllocationRule::kEqual, AllocationRule::kVariance, AllocationRule::kSecondMoment, AllocationRule::kAlbedo})
-    for (WeightRule weights : {WeightRule::kBalance, WeightRule::kNonbalance, WeightRule::kPower})
+  for (Allocation rule :
+       {Allocation::kEqual, Allocation::kVariance, Allocation::kStandardDeviation, Allocation::kSecondMoment,
+        Allocation::kInverseVariance, Allocation::kEqualised, Allocation::kRepresentativity, Allocation::kAlbedo,
+        Allocation::kAuto})
+    for (Weights weights :
+         {Weights::kBalance, Weights::kNonbalance, Weights::kPower, Weights::kCutoff, Weights::kMaximum})
       for (Integrand integrand : {Integrand::kSplit, Integrand::kJoint}) {
         s.allocation = rule;
         s.weights = weights;
@@ -153,9 +157,9 @@ TEST(Render, EdgesAreNotStarved) {
   RenderSettings s = quick();
   s.sampler = SamplerType::kIndependent;
   s.spp = 512;
-  s.allocation = AllocationRule::kAlbedo;
+  s.allocation = Allocation::kAlbedo;
   const FilmBuffer reference = renderScene(scene, s);
-  s.allocation = AllocationRule::kSecondMoment;
+  s.allocation = Allocation::kSecondMoment;
   s.seed = 1;
   const FilmBuffer film = renderScene(scene, s);
   double difference = 0, variance = 0;

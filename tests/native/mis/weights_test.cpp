@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mixture: the three weight rules against their formulas.
+// Mixture: the weight rules against their formulas.
 #include <gtest/gtest.h>
 
 #include "mis/allocation.h"
@@ -10,17 +10,24 @@ namespace {
 
 using namespace test;
 
-constexpr WeightRule kRules[] = {WeightRule::kBalance, WeightRule::kNonbalance, WeightRule::kPower};
+constexpr Weights kRules[] = {Weights::kBalance, Weights::kNonbalance, Weights::kPower, Weights::kCutoff,
+                              Weights::kMaximum};
 
 bool in(TechniqueMask mask, int i) { return (mask >> i & 1) != 0; }
 
 // w_i as the literature writes it, over the techniques that take samples.
-long double weight(WeightRule rule, int i, const Fractions& n, const Fractions& p, TechniqueMask used) {
+long double weight(Weights rule, int i, const Fractions& n, const Fractions& p, TechniqueMask used) {
   const auto term = [&](int k) -> long double {
     if (!in(used, k) || !(n[static_cast<size_t>(k)] > 0)) return 0;
     const long double pk = p[static_cast<size_t>(k)], np = pk * static_cast<long double>(n[static_cast<size_t>(k)]);
-    return rule == WeightRule::kBalance ? np : rule == WeightRule::kNonbalance ? pk : np * np;
+    return rule == Weights::kNonbalance ? pk : rule == Weights::kPower ? np * np : np;
   };
+  const long double top = std::max({term(0), term(1), term(2)});
+  if (rule == Weights::kMaximum) return term(i) == top ? 1 : 0;
+  if (rule == Weights::kCutoff) {
+    const auto kept = [&](int k) { return term(k) >= 0.1L * top ? term(k) : 0; };
+    return kept(i) / (kept(0) + kept(1) + kept(2));
+  }
   return term(i) / (term(0) + term(1) + term(2));
 }
 
@@ -49,7 +56,7 @@ void check(double lo, double hi) {
   Random random(1);
   for (int k = 0; k < 20000; ++k) {
     const Problem r = randomProblem(random, lo, hi);
-    for (WeightRule rule : kRules) {
+    for (Weights rule : kRules) {
       const Mixture mixture(r.fractions, r.samples, rule);
       long double sum = 0;
       bool any = false;
@@ -77,12 +84,12 @@ TEST(Weights, OfExtremeDensities) { check(1e-30, 1e30); }
 
 // Where every density has underflowed, so has f.
 TEST(Weights, NoDensityNoValue) {
-  for (WeightRule rule : kRules) EXPECT_EQ(Mixture({0.5f, 0.5f, 0}, 4, rule).scale(1, {0, 0, 0}, 3), 0);
+  for (Weights rule : kRules) EXPECT_EQ(Mixture({0.5f, 0.5f, 0}, 4, rule).scale(1, {0, 0, 0}, 3), 0);
 }
 
 // A technique that takes no samples takes no part of the weights either.
 TEST(Weights, WithoutSamplesWithoutWeight) {
-  for (WeightRule rule : kRules) {
+  for (Weights rule : kRules) {
     const Mixture mixture({0, 1, 0}, 4, rule);
     EXPECT_FLOAT_EQ(mixture.scale(1, {1e10f, 0.5f, 1e10f}, kAllTechniques), 1 / (4 * 0.5f));
   }
@@ -94,15 +101,15 @@ TEST(Weights, EqualCountsMakeBalanceAndNonbalanceEqual) {
   for (int k = 0; k < 1000; ++k) {
     const Fractions p{static_cast<float>(random.logUniform(1e-3, 1e3)),
                       static_cast<float>(random.logUniform(1e-3, 1e3)), 0};
-    const Mixture a({0.5f, 0.5f, 0}, 6, WeightRule::kBalance), b({0.5f, 0.5f, 0}, 6, WeightRule::kNonbalance);
+    const Mixture a({0.5f, 0.5f, 0}, 6, Weights::kBalance), b({0.5f, 0.5f, 0}, 6, Weights::kNonbalance);
     EXPECT_NEAR(a.scale(0, p, 3), b.scale(0, p, 3), 1e-6 * double(a.scale(0, p, 3)));
   }
 }
 
 TEST(Weights, OfThePaper) {
-  EXPECT_EQ(paperWeights(AllocationRule::kEqual), WeightRule::kBalance);
-  EXPECT_EQ(paperWeights(AllocationRule::kVariance), WeightRule::kNonbalance);
-  EXPECT_EQ(paperWeights(AllocationRule::kSecondMoment), WeightRule::kBalance);
+  EXPECT_EQ(paperWeights(Allocation::kEqual), Weights::kBalance);
+  EXPECT_EQ(paperWeights(Allocation::kVariance), Weights::kNonbalance);
+  EXPECT_EQ(paperWeights(Allocation::kSecondMoment), Weights::kBalance);
 }
 
 }  // namespace

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `auto`: what it chooses from pilot samples, and that it falls back to equal counts where it cannot know.
+#include "mis/candidates.h"
+
+#include <gtest/gtest.h>
+
+#include "mis/adaptive.h"
+#include "ward_case.h"
+
+namespace wardmis {
+namespace {
+
+using namespace test;
+
+// The choice from a pilot of so many hits, each of one sample a technique.
+Fractions choose(const WardCase& c, int hits, const Fractions& cost, uint64_t seed) {
+  Random random(seed);
+  const Mixture equal({1.0f / 3, 1.0f / 3, 1.0f / 3}, 3, Weights::kBalance);
+  CandidateSums sums;
+  Moments moments;
+  for (int h = 0; h < hits; ++h) {
+    CandidateHit hit(candidatesOf(kAllTechniques));
+    for (int i = 0; i < 3; ++i) {
+      const Sampled s = c.sample(i, random);
+      hit.add(s.f, s.p, equal.n, kAllTechniques);
+      moments.add(s.f, s.p, equal.n, kAllTechniques);
+    }
+    hit.addTo(sums, cost);
+    moments.hits += 1;
+  }
+  const float mean = moments.mean[0] + moments.mean[1] + moments.mean[2];
+  return chooseCandidate(sums, mean * mean / moments.hits, kAllTechniques, cost);
+}
+
+// Measured N Var of one estimate with these fractions.
+double variance(const WardCase& c, const Fractions& a, uint64_t seed) {
+  Random random(seed);
+  const int n = 33;
+  const Mixture mixture(a, n, Weights::kBalance);
+  Estimate e;
+  for (int k = 0; k < 4000; ++k)
+    e.add(estimate(c, mixture, systematicCounts(a, n, random.square<float>().x), random));
+  return n * e.variance();
+}
+
+TEST(Candidates, EqualOnesComeFirstAndAllSumToOne) {
+  for (unsigned mask = 1; mask <= kAllTechniques; ++mask) {
+    const CandidateList& list = candidatesOf(static_cast<TechniqueMask>(mask));
+    EXPECT_EQ(list.at(0), restrict({1, 1, 1}, static_cast<TechniqueMask>(mask)));
+    for (int c = 0; c < kCandidates; ++c) {
+      const Fractions a = list.at(c);
+      EXPECT_NEAR(double(a[0]) + double(a[1]) + double(a[2]), 1, 1e-6);
+      for (int k = 0; k < kTechniques; ++k) EXPECT_EQ(a[static_cast<size_t>(k)] > 0, (mask >> k & 1u) != 0);
+    }
+  }
+}
+
+// 1500 hits are what 7 x 7 pixels of 32 samples give: then the choice is better than equal counts, by what theory says.
+TEST(Candidates, BeatEqualCountsWhereTheoryDoes) {
+  int better = 0, cases = 0;
+  for (const auto& json : golden()["three_technique_cases"]) {
+    const WardCase c(json);
+    const Fractions a = choose(c, 1500, {1, 1, 1}, 1);
+    const double chosen = variance(c, a, 2), equal = variance(c, {1.0f / 3, 1.0f / 3, 1.0f / 3}, 2);
+    EXPECT_LT(chosen, 1.05 * equal) << json["input"].dump();
+    better += chosen < 0.7 * equal ? 1 : 0;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 6);
+  EXPECT_GE(better, 4);
+}
+
+TEST(Candidates, FallBackToEqualCountsWhereTheGainIsNoise) {
+  const Fractions equal = candidatesOf(kAllTechniques).at(0);
+  EXPECT_EQ(chooseCandidate({}, 0, kAllTechniques, {1, 1, 1}), equal);
+  int fallen = 0;
+  for (const auto& json : golden()["three_technique_cases"])
+    for (uint64_t seed = 0; seed < 10; ++seed) fallen += choose(WardCase(json), 1, {1, 1, 1}, seed) == equal ? 1 : 0;
+  EXPECT_GE(fallen, 57);  // of 60; a single hit proves nothing
+}
+
+TEST(Candidates, AnExpensiveTechniqueGetsLess) {
+  const WardCase c(golden()["three_technique_cases"][1]);
+  const Fractions a = choose(c, 3000, {1, 1, 1}, 3), b = choose(c, 3000, {1, 1, 30}, 3);
+  EXPECT_LE(b[2], a[2]);
+  EXPECT_LE(b[2], 0.1f);
+}
+
+// The study's own pilot: never worse than equal counts beyond its cost.
+TEST(AutoFractions, EqualWithoutPoints) {
+  Points none;
+  none.techniques = 2;
+  EXPECT_EQ(autoFractions(none, nullptr)[0], 0.5);
+}
+
+TEST(ClampFractions, RaisesAndKeepsTheSum) {
+  const Densities a = clampFractions({0.98, 0.02, 0}, 3, 0.05);
+  EXPECT_DOUBLE_EQ(a[0] + a[1] + a[2], 1);
+  EXPECT_DOUBLE_EQ(a[1], 0.05);
+  EXPECT_DOUBLE_EQ(a[2], 0.05);
+}
+
+}  // namespace
+}  // namespace wardmis
