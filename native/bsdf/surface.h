@@ -3,7 +3,7 @@
 //   f(wi, wo) = diffuse/pi + specular * ward(wi, wo)
 #pragma once
 
-#include "bsdf/ward.h"
+#include "bsdf/batch.h"
 
 namespace wardmis {
 
@@ -18,49 +18,19 @@ struct Surface {
   bool needsDouble() const { return std::min(ax, ay) < 2e-3f; }
 };
 
-// Directions of the samples at one hit, and what the surface says of them: structure of arrays, so that evaluation
-// is one vectorised loop. Local frame; densities per solid angle.
-template <class T, int Capacity>
-struct Batch {
-  T x[Capacity], y[Capacity], z[Capacity];  // wi
-  T specular[Capacity];                     // f_s cos for rho_s = 1
-  T lobe[Capacity];                         // the lobe technique's pdf
-
-  Vec3<T> wi(int j) const { return {x[j], y[j], z[j]}; }
-  void set(int j, Vec3<T> wi) { x[j] = wi.x, y[j] = wi.y, z[j] = wi.z; }
-};
-
 // f_s cos (rho_s = 1) and the lobe's pdf at one direction.
 template <class T>
 inline WardValue<T> evaluateWard(const Surface& s, Vec3<T> wi, Vec3<T> wo) {
   return wardEvaluate(s.variant, wi, wo, T(1) / T(s.ax), T(1) / T(s.ay));
 }
 
-// The same for the first n directions of a batch, in one vectorised loop.
-template <WardVariant V, class T, int Capacity>
-inline void evaluateWard(Batch<T, Capacity>& b, int n, Vec3<T> wo, T invAx, T invAy) {
-  for (int j = 0; j < n; ++j) {
-    const WardValue<T> w = wardEvaluate<V>({b.x[j], b.y[j], b.z[j]}, wo, invAx, invAy);
-    b.specular[j] = w.fCos;
-    b.lobe[j] = w.pdf;
-  }
-}
-
 // Below this many directions, one at a time is faster.
 inline constexpr int kVectorised = 8;
 
-// Fills specular and lobe of the first n directions, however few.
+// Fills specular and lobe of the first n directions, however few, with the bits of evaluateWard().
 template <class T, int Capacity>
 inline void evaluate(const Surface& s, Vec3<T> wo, Batch<T, Capacity>& b, int n) {
-  const T invAx = T(1) / T(s.ax), invAy = T(1) / T(s.ay);
-  switch (s.variant) {
-    case WardVariant::kWard:
-      return evaluateWard<WardVariant::kWard>(b, n, wo, invAx, invAy);
-    case WardVariant::kWardDur:
-      return evaluateWard<WardVariant::kWardDur>(b, n, wo, invAx, invAy);
-    case WardVariant::kWardGmd:
-      return evaluateWard<WardVariant::kWardGmd>(b, n, wo, invAx, invAy);
-  }
+  wardBatch(s.variant, {n, b.x, b.y, b.z, b.specular, b.lobe}, wo, T(1) / T(s.ax), T(1) / T(s.ay));
 }
 
 }  // namespace wardmis

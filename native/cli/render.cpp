@@ -20,6 +20,7 @@
 #include "cli/verbs.h"
 #include "film/write_file.h"
 #include "integrate/passes.h"
+#include "math/clones.h"
 #include "math/error.h"
 #include "scene/glb.h"
 
@@ -187,7 +188,7 @@ json statisticsJson(const Options& o, const Scene& scene, const Statistics& s, c
             {"emissive_triangles", s.emissiveTriangles}}},
           {"mean_variance", variance},
           {"threads", s.threads},
-          {"isa", "x86-64"}};
+          {"isa", clonedFor()}};
 }
 
 std::vector<PassInfo> choosePasses(const std::string& list, TechniqueMask techniques) {
