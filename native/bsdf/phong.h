@@ -5,6 +5,8 @@
 // ward.h.
 #pragma once
 
+#include <limits>
+
 #include "math/number.h"
 #include "math/vec.h"
 
@@ -22,6 +24,19 @@ PhongValue<T> phongEvaluate(T cosGamma, T m) {
   if (!(cosGamma > T(0))) return {T(0), T(0)};
   const T power = std::pow(cosGamma, m) / (2 * kPi<T>);
   return {(m + 2) * power, (m + 1) * power};
+}
+
+// ln of phongEvaluate().pdf, also where that underflows.
+template <class T>
+T phongLogPdf(T cosGamma, T m) {
+  if (!(cosGamma > T(0))) return -std::numeric_limits<T>::infinity();
+  return std::log((m + 1) / (2 * kPi<T>)) + m * std::log(cosGamma);
+}
+
+// f_s cos(theta_i) / pdf for rho_s = 1.
+template <class T>
+T phongWeight(T cosGamma, T cosThetaI, T m) {
+  return cosGamma > T(0) ? (m + 2) / (m + 1) * cosThetaI : T(0);
 }
 
 template <class T>

@@ -11,6 +11,8 @@
 // sampled direction, wo the fixed one. Densities are per solid angle of wi.
 #pragma once
 
+#include <limits>
+
 #include "math/number.h"
 #include "math/vec.h"
 
@@ -87,14 +89,34 @@ inline Vec3<T> wardSample(Vec3<T> wo, T ax, T ay, Vec2<T> u) {
   return {k * sx - wo.x, k * sy - wo.y, k - wo.z};
 }
 
+// cos(theta_h) of a half vector of any length: no square leaves the number range.
+template <class T>
+inline T cosThetaHalf(Vec3<T> h) {
+  const T largest = std::max(h.z, std::max(std::abs(h.x), std::abs(h.y)));
+  return h.z / largest / length(Vec3<T>{h.x / largest, h.y / largest, h.z / largest});
+}
+
 // f_s cos / pdf of a sampled direction, rho_s = 1, without the exponential (it cancels).
 template <class T>
 inline T wardWeight(WardVariant variant, Vec3<T> wi, Vec3<T> wo) {
   if (!(wi.z > T(0)) || !(wo.z > T(0))) return T(0);
   const Vec3<T> h = wi + wo;
   if (variant == WardVariant::kWardGmd) return T(2) * wi.z / h.z;
-  const T a = (h.z / dot(h, h)) * h.z * h.z * T(0.5);  // (h.o) cos^3(theta_h)
-  return variant == WardVariant::kWard ? a * std::sqrt(wi.z) / std::sqrt(wo.z) : a / wo.z;
+  const T c = cosThetaHalf(h);  // (h.o) cos^3(theta_h) = h.z/2 c^2
+  return variant == WardVariant::kWard ? T(0.5) * h.z * c * c * (std::sqrt(wi.z) / std::sqrt(wo.z))
+                                       : T(0.5) * (h.z / wo.z) * c * c;
+}
+
+// ln of wardEvaluate().pdf, also where the density itself underflows; -infinity unless both directions are above.
+//   ln p = ln(K/2) + ln |h|^2 - 3 ln h.z - E
+template <class T>
+inline T wardLogPdf(Vec3<T> wi, Vec3<T> wo, T invAx, T invAy) {
+  if (!(wi.z > T(0)) || !(wo.z > T(0))) return -std::numeric_limits<T>::infinity();
+  const Vec3<T> h = wi + wo;
+  const T x = h.x / h.z * invAx, y = h.y / h.z * invAy;
+  // the standard library's logarithm knows denormal numbers
+  const T lnHalfK = std::log(invAx) + std::log(invAy) - std::log(2 * kPi<T>);
+  return lnHalfK - T(2) * std::log(cosThetaHalf(h)) - std::log(h.z) - (x * x + y * y);
 }
 
 }  // namespace wardmis

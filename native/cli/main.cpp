@@ -33,23 +33,16 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.failure_message(CLI::FailureMessage::help);
 
+  const auto add = [&](const char* name, const char* what, wardmis::Verb (*options)(CLI::App&)) {
+    CLI::App* sub = app.add_subcommand(name, what);
+    return std::pair{sub, options(*sub)};
+  };
   const std::pair<CLI::App*, wardmis::Verb> verbs[] = {
-      [&] {
-        auto* s = app.add_subcommand("render", "render a scene to a multi-layer EXR");
-        return std::pair{s, wardmis::addRender(*s)};
-      }(),
-      [&] {
-        auto* s = app.add_subcommand("info", "what a scene holds, needs, and leaves out");
-        return std::pair{s, wardmis::addInfo(*s)};
-      }(),
-      [&] {
-        auto* s = app.add_subcommand("compare", "the error of an image against a reference");
-        return std::pair{s, wardmis::addCompare(*s)};
-      }(),
-      [&] {
-        auto* s = app.add_subcommand("study", "the paper's estimators at one shading point: exactly, and by trials");
-        return std::pair{s, wardmis::addStudy(*s)};
-      }(),
+      add("render", "render a scene to a multi-layer EXR", wardmis::addRender),
+      add("info", "what a scene holds, needs, and leaves out", wardmis::addInfo),
+      add("compare", "the error of an image against a reference", wardmis::addCompare),
+      add("study", "the paper's estimators at one shading point: exactly, and by trials", wardmis::addStudy),
+      add("eval", "f, pdf, log pdf and sampling weight of a BRDF, a line each", wardmis::addEval),
   };
 
   bool json = false;

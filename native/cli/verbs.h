@@ -13,5 +13,6 @@ Verb addRender(CLI::App& app);
 Verb addInfo(CLI::App& app);
 Verb addCompare(CLI::App& app);
 Verb addStudy(CLI::App& app);
+Verb addEval(CLI::App& app);
 
 }  // namespace wardmis

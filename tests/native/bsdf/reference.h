@@ -2,6 +2,8 @@
 // The variants by name, and the textbook formulas in long double: what the renderer's own forms are compared with.
 #pragma once
 
+#include <limits>
+
 #include "bsdf/ward.h"
 
 namespace wardmis::test {
@@ -28,21 +30,22 @@ WardValue<T> ward(WardVariant v, Vec3<T> wi, Vec3<T> wo, T ax, T ay) {
 }
 
 struct Reference {
-  long double e, fCos, pdf;  // the exponent E, f_s cos(theta_i), Walter's density
+  long double e, fCos, pdf, logPdf, weight;  // the exponent E, f_s cos(theta_i), Walter's density, f_s cos/pdf
 };
 
 template <class T>
 Reference reference(WardVariant v, Vec3<T> wi, Vec3<T> wo, T ax, T ay) {
   using L = long double;
-  if (!(wi.z > 0) || !(wo.z > 0)) return {0, 0, 0};
+  if (!(wi.z > 0) || !(wo.z > 0)) return {0, 0, 0, -std::numeric_limits<L>::infinity(), 0};
   const L x = L(wi.x) + L(wo.x), y = L(wi.y) + L(wo.y), z = L(wi.z) + L(wo.z), h2 = x * x + y * y + z * z, ci = wi.z,
           co = wo.z;
   const L e = (x / z / L(ax)) * (x / z / L(ax)) + (y / z / L(ay)) * (y / z / L(ay));
-  const L k = std::exp(-e) / (kPi<L> * L(ax) * L(ay));
+  const L k = 1 / (kPi<L> * L(ax) * L(ay));
   const L f = v == WardVariant::kWard      ? k / 4 / std::sqrt(ci * co)
               : v == WardVariant::kWardDur ? k / 4 / (ci * co)
                                            : k * h2 / (z * z * z * z);
-  return {e, f * ci, k * h2 / (2 * z * z * z)};
+  const L p = k * h2 / (2 * z * z * z);  // both without the exponential
+  return {e, f * ci * std::exp(-e), p * std::exp(-e), std::log(p) - e, f * ci / p};
 }
 
 }  // namespace wardmis::test

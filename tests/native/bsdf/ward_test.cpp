@@ -55,8 +55,11 @@ void checkGoldenPoints(double toleranceFactor, bool onlyFloatInputs) {
       if (above) {
         const double weight = expect[v.weight].get<double>();
         EXPECT_NEAR(double(wardWeight(v.type, wi, wo)), weight, 8 * kEps<T> * weight) << v.weight;
+        const double log = expect["ln_pdf"].get<double>();
+        EXPECT_NEAR(double(wardLogPdf(wi, wo, 1 / ax, 1 / ay)), log, tolerance * std::max(1.0, std::abs(log)));
       } else {
         EXPECT_EQ(wardWeight(v.type, wi, wo), 0);
+        EXPECT_EQ(wardLogPdf(wi, wo, T(1), T(1)), -std::numeric_limits<T>::infinity());
       }
     }
     ++checked;
@@ -89,6 +92,7 @@ TEST(Ward, GoldenSampling) {
       for (const Variant& v : kVariants) {
         EXPECT_EQ(ward(v.type, wi, wo, ax, ay).pdf, 0);
         EXPECT_EQ(wardWeight(v.type, wi, wo), 0);
+        EXPECT_EQ(wardLogPdf(wi, wo, 1.0, 1.0), -std::numeric_limits<double>::infinity());
       }
       continue;
     }
@@ -158,10 +162,16 @@ TYPED_TEST(Numbers, Extremes) {
               };
               check(got.fCos, exact.fCos, "f cos");
               check(got.pdf, exact.pdf, "pdf");
-              const T weight = wardWeight(v.type, wi, wo);
-              ASSERT_GE(weight, 0);
+              if (const double log = double(exact.logPdf); exact.e < std::numeric_limits<T>::max()) {
+                ASSERT_NEAR(double(wardLogPdf(wi, wo, 1 / T(ax), 1 / T(ay))), log,
+                            16 * kEps<T> * std::max(30.0, std::abs(log) + double(exact.e)));
+              }
+              const double weight = double(wardWeight(v.type, wi, wo)), ratio = double(exact.weight);
+              if (ratio < double(std::numeric_limits<T>::max())) {
+                ASSERT_NEAR(weight, ratio, 16 * kEps<T> * ratio + 4 * double(std::numeric_limits<T>::min()));
+              }
               if (v.type == WardVariant::kWardGmd) {
-                ASSERT_LE(weight, T(2));
+                ASSERT_LE(weight, 2);
               }
             }
           }
@@ -181,6 +191,7 @@ TYPED_TEST(Numbers, NothingBelowTheHorizon) {
         EXPECT_EQ(value.fCos, 0);
         EXPECT_EQ(value.pdf, 0);
         EXPECT_EQ(wardWeight(v.type, wi, wo), 0);
+        EXPECT_EQ(wardLogPdf(wi, wo, T(1), T(1)), -std::numeric_limits<T>::infinity());
       }
     }
   }
