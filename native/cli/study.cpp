@@ -10,6 +10,7 @@
 #include "film/write_file.h"
 #include "math/error.h"
 #include "study/gnuplot.h"
+#include "study/paper.h"
 #include "study/report.h"
 
 namespace wardmis {
@@ -22,7 +23,7 @@ struct Options {
   std::vector<std::string> techniques{"lobe", "cosine"}, names;
   int trials = 1000, threads = 0;
   uint64_t seed = 0;
-  bool json = false;
+  bool json = false, paper = false;
 };
 
 // "N", or "N..M": from N by doubling to M.
@@ -82,7 +83,19 @@ std::vector<const Strategy*> chosen(const std::vector<std::string>& names, size_
   return list;
 }
 
+// The paper's printed formulas and its ranking, held against quadrature.
+int runPaper(const Options& o) {
+  if (!o.plot.empty()) checkPlotName(o.plot);
+  const std::vector<Erratum> wrong = errata();
+  const std::vector<Verdict> ranking = verdicts();
+  if (!o.plot.empty()) plotVerdicts(ranking, o.plot);
+  fmt::print("Printed formulas\n\n{}\nN Var over that of equal counts, rho_s = 0.5, rho_d = 0.3\n\n{}", errataTable(wrong),
+             verdictTable(ranking));
+  return 0;
+}
+
 int run(Options& o) {
+  if (o.paper) return runPaper(o);
   const auto start = std::chrono::steady_clock::now();
   StudyInput& in = o.input;
   for (StudyBrdf b : {StudyBrdf::kLafortunePhong, StudyBrdf::kWard, StudyBrdf::kWardDur, StudyBrdf::kWardGmd})
@@ -162,6 +175,9 @@ Verb addStudy(CLI::App& app) {
   app.add_flag("--json", o->json, "one object with the keys input, expect (as in tests/golden) and measured");
   app.add_option("--csv", o->csv, "write a line for each strategy and number of samples");
   app.add_option("--plot", o->plot, "draw variance against samples and error against time, as .svg or .png (needs gnuplot)");
+  app.add_flag("--paper", o->paper,
+               "instead: how far the paper's printed formulas are off, and when its ranking of the allocations is true; with "
+               "--plot as a figure");
   return [o] { return run(*o); };
 }
 
