@@ -16,7 +16,7 @@ LIBRARIES = {"embree": ["native/scene/accel"], "CLI": ["native/cli/"], "OpenImag
 BLENDER = {"bpy", "bpy_extras", "mathutils", "gpu", "bl_ui", "nodeitems_utils"}
 WITH_BLENDER = ("addon/", "tests/addon/", "tests/end_to_end/cycles_scenes.py", "blend/")
 # These parts of the add-on are plain data: they must work, and be tested, without Blender.
-WITHOUT_BLENDER = ("addon/wardmis/export/model.py", "addon/wardmis/export/glb.py")
+WITHOUT_BLENDER = tuple(f"addon/wardmis/export/{name}.py" for name in ("model", "glb", "target"))
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include\s*(?:"([^"]+)"|<([^>]+)>)', re.MULTILINE)
 

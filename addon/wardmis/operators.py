@@ -13,6 +13,7 @@ from bpy_extras.io_utils import ExportHelper
 
 from .engine import WARDMIS_RenderEngine, scene_export_to
 from .export import ExportError, export_depsgraph
+from .export.target import check_target
 
 
 def export_scene(path: str | os.PathLike[str], depsgraph: Any = None) -> None:
@@ -22,13 +23,12 @@ def export_scene(path: str | os.PathLike[str], depsgraph: Any = None) -> None:
     """
     path = Path(path).absolute()
     try:
-        if not path.parent.is_dir():
-            raise ExportError(f"the folder {path.parent} does not exist; create it, or choose another")
+        check_target(path)  # before Blender evaluates the scene, which may take long
         if depsgraph is not None:
             export_depsgraph(depsgraph, path)
         else:
             _export_by_render(path)
-    except (ExportError, OSError) as error:
+    except ExportError as error:
         raise RuntimeError(f"WardMIS: {error}") from error
 
 
@@ -39,6 +39,8 @@ def _export_by_render(path: Path) -> None:
         scene.render.engine = WARDMIS_RenderEngine.bl_idname
         with scene_export_to(path):
             bpy.ops.render.render(scene=scene.name, layer=layer.name)
+    except RuntimeError as error:  # the engine's reports, as Blender prints them
+        raise RuntimeError(str(error).strip().removeprefix("Error: ")) from error
     finally:
         scene.render.engine = engine
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import tempfile
 import unittest
 from pathlib import Path
@@ -10,7 +11,7 @@ from unittest import mock
 
 import numpy as np
 from support import accessor, read_glb
-from wardmis.export import glb
+from wardmis.export import glb, target
 from wardmis.export.context import ExportError
 from wardmis.export.model import (
     CameraData,
@@ -113,11 +114,33 @@ class Structure(GlbTest):
     def test_failed_write_leaves_the_old_file(self):
         self.path.write_text("old")
         with (
-            mock.patch.object(glb.os, "replace", side_effect=OSError(28, "No space left on device")),
-            self.assertRaises(OSError),
+            mock.patch.object(target.os, "replace", side_effect=OSError(28, "No space left on device", "hidden.tmp")),
+            self.assertRaisesRegex(ExportError, f"^{self.path} cannot be written: No space left on device$"),
         ):
             self.write(scene())
         self.assertEqual([p.read_text() for p in self.folder.iterdir()], ["old"])
+
+    def test_what_is_no_file_is_refused_and_left_alone(self):
+        pipe, link = self.folder / "pipe", self.folder / "link"
+        os.mkfifo(pipe)
+        link.symlink_to(pipe)
+        for path, says in (
+            (pipe, "is a device or a pipe"),
+            (link, "is a device or a pipe"),
+            (self.folder, "is a folder"),
+            (self.folder / "none" / "scene.glb", "the folder .*none does not exist"),
+        ):
+            with self.assertRaisesRegex(ExportError, f"^{path} .*{says}"):
+                glb.write_glb(scene(), path)
+        self.assertTrue(pipe.is_fifo() and link.is_symlink())
+        self.assertEqual(len(list(self.folder.iterdir())), 2)
+
+    def test_link_to_a_file_stays(self):
+        link = self.folder / "link.glb"
+        link.symlink_to(self.path)
+        glb.write_glb(scene(), link)
+        self.assertEqual(link.read_bytes()[:4], b"glTF")
+        self.assertTrue(link.is_symlink() and not self.path.is_symlink())
 
 
 class Instances(GlbTest):

@@ -23,7 +23,7 @@ def export_depsgraph(
 ) -> list[str]:
     """Writes what the render of `depsgraph` needs to `path`; returns the notes for the user.
 
-    Raises ExportError (the scene cannot be exported), OSError (the file cannot be written) or ExportCancelled.
+    Raises ExportError (the scene cannot be exported, or the file not written) or ExportCancelled.
     """
 
     def check_cancelled() -> None:

@@ -8,7 +8,6 @@ import math
 import os
 import struct
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -28,6 +27,7 @@ from .model import (
     SceneData,
     TextureUse,
 )
+from .target import writing
 
 EXTENSION = "WARDMIS_scene"
 INSTANCING = "EXT_mesh_gpu_instancing"
@@ -49,7 +49,7 @@ MAX_BYTES = 2**32 - 1  # a GLB counts its bytes in 32 bits
 def write_glb(
     scene: SceneData, path: str | os.PathLike[str], check_cancelled: Callable[[], None] = lambda: None
 ) -> None:
-    """Writes `scene` to `path`, completely or not at all. OSError if that fails, ExportError if the scene is too large."""
+    """Writes `scene` to `path`, completely or not at all. ExportError if that fails, or if the scene is too large."""
     encoder = _Encoder()
     document = encoder.encode(scene)
     text = json.dumps(document, separators=(",", ":"), allow_nan=False).encode()
@@ -59,22 +59,14 @@ def write_glb(
         raise ExportError(
             f"the scene needs {size / 2**30:.1f} GiB, and a GLB file holds 4 GiB; use instances, or fewer or smaller meshes and images"
         )
-    path = Path(path)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
-        with open(temporary, "wb", buffering=0) as file:
-            file.write(struct.pack("<4sII", b"glTF", 2, size))
-            file.write(struct.pack("<I4s", len(text), b"JSON") + text)
-            file.write(struct.pack("<I4s", encoder.length, b"BIN\0"))
-            for chunk in encoder.chunks:
-                view = memoryview(chunk).cast("B")
-                for start in range(0, len(view), WRITE_STEP):
-                    _write_all(file, view[start : start + WRITE_STEP])
-                    check_cancelled()
-        os.replace(temporary, path)
-    except BaseException:
-        temporary.unlink(missing_ok=True)
-        raise
+    header = struct.pack("<4sII", b"glTF", 2, size) + struct.pack("<I4s", len(text), b"JSON") + text
+    header += struct.pack("<I4s", encoder.length, b"BIN\0")
+    with writing(path) as file:
+        for chunk in (header, *encoder.chunks):
+            view = memoryview(chunk).cast("B")
+            for start in range(0, len(view), WRITE_STEP):
+                _write_all(file, view[start : start + WRITE_STEP])
+                check_cancelled()
 
 
 def _write_all(file: Any, view: memoryview) -> None:
