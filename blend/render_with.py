@@ -39,7 +39,7 @@ def render(out: str, settings: list[str]) -> None:
 
 
 if __name__ == "__main__":
-    arguments = sys.argv[sys.argv.index("--") + 1 :]
+    arguments = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else []
     if not arguments:
         sys.exit(__doc__)
     render(arguments[0], arguments[1:])

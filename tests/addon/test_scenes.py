@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The Blender files of blend/: that they hold what their names promise, and that make_scenes.py still makes them."""
 
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -165,3 +166,14 @@ class Teapot(unittest.TestCase):
         body = slice(4 * n * n, 12 * n * n)
         centers = (a + c)[body] / 2
         self.assertGreater((normals[body, :2] * centers[:, :2]).sum(axis=1).min(), 0)
+
+
+class Scripts(unittest.TestCase):
+    def test_without_arguments_they_say_how_they_are_called(self):
+        for name in ("render_with", "export_scene"):
+            script = BLEND / f"{name}.py"
+            command = [bpy.app.binary_path, "--background", "--addons", "wardmis", "--python", script]
+            done = subprocess.run(command, capture_output=True, text=True, timeout=60)
+            self.assertEqual(done.returncode, 1, done.stderr)
+            self.assertIn(f"--python blend/{name}.py -- ", done.stderr)
+            self.assertNotIn("Traceback", done.stderr)
