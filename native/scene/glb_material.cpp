@@ -258,10 +258,7 @@ DecodedImage Materials::decode(const PendingImage& pending, const Bytes& bytes, 
                            number("channels", 4), raw->at("type").choice(kTypes)};
     return rawImage(bytes.data, layout, pending.space, budget);
   } catch (const ImageError& e) {
-    const auto uri = json.find("uri");
-    json.fail(fmt::format("{}{} (needed by {})", uri ? "'" + cleaned(uri->string().substr(0, 80)) + "' " : "",
-                          cleaned(e.what()), pending.neededBy),
-              "save the image again as PNG or OpenEXR, then export the scene");
+    json.fail(fmt::format("{} (needed by {})", e.what(), pending.neededBy), "export the scene again");
   }
 }
 
@@ -343,6 +340,13 @@ void Materials::finish(Scene& scene) {
     if (decoded[i].mended > 0)
       leftOut_.add(fmt::format("{} values of image {}", decoded[i].mended, pending_[i].json.described()),
                    "negative or not finite; 0 is used");
+    if (!decoded[i].damage.empty()) {
+      const auto uri = pending_[i].json.find("uri");
+      scene.notes.push_back(fmt::format("image {}{} {} (needed by {}); magenta is shown instead",
+                                        pending_[i].json.described(),
+                                        uri ? " '" + cleaned(uri->string().substr(0, 80)) + "'" : std::string(),
+                                        cleaned(decoded[i].damage), pending_[i].neededBy));
+    }
     read_.images.push_back(std::move(image));
   }
   for (const Bake& b : bakes_) bake(b, budget);

@@ -14,7 +14,7 @@ namespace {
 
 // Of float images: colours become linear, and what no renderer can use becomes 0.
 DecodedImage finished(Image image, ColorSpace space) {
-  DecodedImage out{std::move(image), 0};
+  DecodedImage out{std::move(image), 0, {}};
   Image& im = out.image;
   if (im.floats.empty()) {
     im.srgb = space != ColorSpace::kLinear;
@@ -34,13 +34,12 @@ DecodedImage finished(Image image, ColorSpace space) {
 }  // namespace
 
 DecodedImage decodeImage(std::span<const std::byte> file, ColorSpace space, ImageBudget& budget) {
-  FileImage read = [&] {
-    try {
-      return readImageFile(file);
-    } catch (const std::runtime_error& e) {
-      throw ImageError(e.what());
-    }
-  }();
+  FileImage read;
+  try {
+    read = readImageFile(file);
+  } catch (const std::runtime_error& e) {
+    return {Image{"", 1, 1, 3, true, {255, 0, 255}, {}}, 0, e.what()};
+  }
   if (!budget.take(read.image.bytes.size() + read.image.floats.size() * sizeof(float)))
     throw ImageError("is one of too many images with the same data");
   if (space == ColorSpace::kAuto) space = read.integers ? ColorSpace::kSrgb : ColorSpace::kLinear;

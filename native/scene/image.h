@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 #include <stdexcept>
+#include <string>
 
 #include "scene/scene.h"
 
@@ -18,6 +19,7 @@ enum class ColorSpace : uint8_t { kAuto, kSrgb, kLinear };
 struct DecodedImage {
   Image image;
   uint64_t mended = 0;  // values that were not finite, or negative, and were set to 0
+  std::string damage;   // why it is not what the file should hold but one magenta texel, Blender's sign for a lost image
 };
 
 constexpr int kLargestImageSide = 1 << 16;
@@ -43,7 +45,7 @@ class ImageBudget {
   std::atomic<uint64_t> left_;  // images are decoded in parallel
 };
 
-// An image file, told by its first bytes; see image_file.h.
+// An image file, told by its first bytes; see image_file.h. What cannot be read is no reason not to render the rest.
 DecodedImage decodeImage(std::span<const std::byte> file, ColorSpace space, ImageBudget& budget);
 
 // Raw pixels of 8 bits or 32-bit floats, rows from the bottom: exactly width * height * channels values.

@@ -103,6 +103,24 @@ class Images(unittest.TestCase):
         self.assertIn(path, missing(image))
         np.testing.assert_array_equal(export_image(image).pixels, [[[1, 0, 1]]])
 
+    def test_folder_is_named_as_one(self):
+        image = self.generated(is_float=False)
+        image.source, image.filepath = "FILE", self.folder.name
+        self.assertIn(f"its file '{self.folder.name}' is a folder", missing(image))
+
+    def test_damaged_file_is_named_and_magenta(self):
+        for file_format in ("PNG", "JPEG", "OPEN_EXR"):
+            with self.subTest(file_format):
+                _, content = self.file(file_format, file_format == "OPEN_EXR")
+                path = os.path.join(self.folder.name, "damaged")
+                with open(path, "wb") as file:
+                    file.write(content[:20])
+                image = bpy.data.images.load(path)
+                self.assertIn(f"cannot be read from '{path}'", missing(image))
+                np.testing.assert_array_equal(export_image(image).pixels, [[[1, 0, 1]]])
+                np.testing.assert_array_equal(texels(image), [[[1, 0, 1, 1]]])
+                bpy.data.images.remove(image)
+
     def test_non_color_is_linear_and_others_are_noted(self):
         image, _ = self.file("PNG")
         image.colorspace_settings.name = "Non-Color"

@@ -59,10 +59,11 @@ def _reason_missing(image: Any) -> str | None:
         return "a multi-layer EXR cannot be read as a texture; save the layer as an image of its own"
     if image.source == "VIEWER":
         return "a render or viewer result cannot be read as a texture; save it as a file"
-    if image.source == "FILE" and not image.is_dirty and not image.packed_file and not os.path.isfile(_path(image)):
-        return f"its file '{_path(image)}' is missing"
-    if not _mime_type(image) and 0 in image.size:
-        return f"it cannot be read from '{_path(image)}'"
+    path = _path(image)
+    if image.source == "FILE" and not image.is_dirty and not image.packed_file and not os.path.isfile(path):
+        return f"its file '{path}' is {'a folder' if os.path.isdir(path) else 'missing'}"
+    if 0 in image.size:  # Blender has tried: a damaged file, too, is better found here than by the renderer
+        return f"it cannot be read from '{path}'"
     return None
 
 
