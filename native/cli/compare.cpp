@@ -7,6 +7,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "cli/options.h"
+#include "cli/paths.h"
 #include "cli/verbs.h"
 
 namespace wardmis {
@@ -26,14 +28,18 @@ Verb addCompare(CLI::App& app) {
   app.add_option("--layer", o->layer, "layer of multi-layer files (default: the first with a Combined pass)");
   app.add_option("--difference", o->difference,
                  "write the relative error |x - r| / (r + 0.01) as an image: the values as .exr, or false colours with "
-                 "their scale as .png, .jpg ... (needs OpenImageIO)");
+                 "their scale as .png, .jpg ... (needs OpenImageIO)")
+      ->check(named());
   app.add_option("--scale", o->scale, "relative error shown in the brightest colour")
-      ->check(CLI::Range(1e-9, 1e9))
+      ->check(between(1e-9, 1e9))
       ->capture_default_str();
-  app.add_option("--max-relmse", o->maxRelMse, "exit 1 if relMSE is above this")->check(CLI::Range(0.0, 1e30));
+  app.add_option("--max-relmse", o->maxRelMse, "exit 1 if relMSE is above this")->check(between(0, 1e30));
   app.add_flag("--json", o->json, "machine output");
 
   return [o] {
+    checkDistinct({{"IMAGE", o->image}, {"--difference", o->difference}});
+    checkDistinct({{"REFERENCE", o->reference}, {"--difference", o->difference}});
+    if (!o->difference.empty()) checkWritable(o->difference);
     const RgbImage image = readRgb(o->image, o->layer), reference = readRgb(o->reference, o->layer);
     const ImageError e = compareImages(image, reference);
     if (!o->difference.empty())

@@ -21,6 +21,19 @@ int fail(bool json, wardmis::ExitCode code, const std::string& what, const std::
   return static_cast<int>(code);
 }
 
+// What the parser found wrong, where its own words do not say it.
+std::string complaint(const CLI::App& app, const CLI::ParseError& e, int argc, char** argv) {
+  if (app.get_subcommands().empty()) {  // whatever else may be wrong
+    std::string verbs;
+    for (const CLI::App* verb : app.get_subcommands(nullptr)) verbs += (verbs.empty() ? "" : ", ") + verb->get_name();
+    const bool tried = argc > 1 && argv[1][0] != '-';
+    return fmt::format("{}; there are: {}", tried ? fmt::format("there is no verb '{}'", argv[1]) : "a verb is missing",
+                       verbs);
+  }
+  const std::string what = e.what(), option = what.substr(0, what.find(':'));
+  return what.find("At Most 1 required") == what.npos ? what : option + " is given more than once";
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -57,7 +70,7 @@ int main(int argc, char** argv) {
     return app.exit(e);
   } catch (const CLI::ParseError& e) {
     const auto subs = app.get_subcommands();
-    return fail(json, ExitCode::kUsage, e.what(),
+    return fail(json, ExitCode::kUsage, complaint(app, e, argc, argv),
                 fmt::format("see 'wardmis {}--help'", subs.empty() ? "" : subs.front()->get_name() + " "));
   } catch (const wardmis::Error& e) {
     return fail(json, e.code, e.what(), e.hint);

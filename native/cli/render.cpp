@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "integrate/render.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -10,13 +9,14 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
-#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "cli/options.h"
+#include "cli/paths.h"
 #include "cli/verbs.h"
 #include "film/write_file.h"
 #include "integrate/passes.h"
@@ -68,6 +68,8 @@ constexpr std::array kIntegrands{Integrand::kSplit, Integrand::kJoint};
 constexpr std::array kIntegrators{Integrator::kDirect, Integrator::kPath};
 constexpr std::array kSamplers{SamplerType::kIndependent, SamplerType::kStratified, SamplerType::kSobol};
 constexpr std::array kFilters{FilterType::kBox, FilterType::kGaussian, FilterType::kBlackmanHarris};
+
+constexpr size_t kLongestLayer = 200;  // the name of a channel has at most 255 bytes in an OpenEXR, the pass's included
 
 template <class E, size_t N>
 CLI::IsMember among(const std::array<E, N>& all, std::vector<std::string> more = {}) {
@@ -212,26 +214,6 @@ bool isNamedExr(const std::string& path) {
   return extension == ".exr";
 }
 
-// Fails early, not after the render: the folder must exist and be writable.
-void checkWritable(const std::string& path) {
-  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
-  if (!std::filesystem::is_directory(folder))
-    throw Error(ExitCode::kFile, fmt::format("{}: its folder does not exist", path),
-                "make the folder, or choose another one");
-  if (std::filesystem::is_directory(path))
-    throw Error(ExitCode::kFile, fmt::format("{}: is a folder", path), "name a file in it");
-  if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path))  // /dev/null would be replaced
-    throw Error(ExitCode::kFile, fmt::format("{}: is a device, not a file", path), "name a file");
-  // By doing it: access() grants root what some file systems then refuse.
-  const std::string probe = (folder / fmt::format(".wardmis-{}", getpid())).string();
-  const int fd = open(probe.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
-  if (fd < 0)
-    throw Error(ExitCode::kFile, fmt::format("{}: its folder is not writable: {}", path, std::strerror(errno)),
-                "check its permissions, or choose another one");
-  close(fd);
-  unlink(probe.c_str());
-}
-
 void useResolution(Scene& scene, const std::string& text) {
   int w = 0, h = 0;
   char rest = 0;
@@ -266,9 +248,8 @@ int run(Options& o) {
   s.integrator = pick(o.integrator, kIntegrators);
   s.sampler = pick(o.sampler, kSamplers);
   s.generalKernel = o.kernel == "general";
-  if (!std::isfinite(s.seconds) || !std::isfinite(s.minFraction) || !std::isfinite(o.previewInterval))
-    throw Error(ExitCode::kUsage, "an option's value is not a number", "give a finite one");
   choosePasses(o.passes, kAllTechniques);
+  checkDistinct({{"SCENE", o.scene}, {"--output", o.output}, {"--stats", o.stats}, {"--preview", o.preview}});
   for (const std::string* path : {&o.output, &o.stats, &o.preview})
     if (!path->empty()) checkWritable(*path);
   for (const std::string* path : {&o.output, &o.preview})
@@ -382,7 +363,7 @@ Verb addRender(CLI::App& app) {
   auto o = std::make_shared<Options>();
   RenderSettings& s = o->settings;
   app.add_option("SCENE", o->scene, "a .glb or .gltf file")->required();
-  app.add_option("-o,--output", o->output, "the EXR to write")->required();
+  app.add_option("-o,--output", o->output, "the EXR to write")->required()->check(named());
   app.add_option("--allocation", o->allocation, "how the samples of a hit are shared")
       ->check(among(kAllocations))
       ->capture_default_str();
@@ -402,7 +383,7 @@ Verb addRender(CLI::App& app) {
                   ->check(CLI::Range(1u, 1u << 24))
                   ->capture_default_str();
   app.add_option("--time", s.seconds, "stop after this many seconds instead, the pilot's included")
-      ->check(CLI::Range(0.001, 1e7))
+      ->check(between(0.001, 1e7))
       ->excludes(spp);
   app.add_option("--samples-per-hit", s.samplesPerHit, "samples shared at the first hit")
       ->check(CLI::Range(1, kMaxSamplesPerHit))
@@ -411,29 +392,31 @@ Verb addRender(CLI::App& app) {
       ->check(CLI::Range(0u, 1u << 20))
       ->capture_default_str();
   app.add_option("--min-fraction", s.minFraction, "no technique gets less than this share")
-      ->check(CLI::Range(0.001f, 0.5f))
+      ->check(between(0.001, 0.5))
       ->capture_default_str();
   app.add_option("--max-depth", s.maxDepth, "surface hits of a path; 1 is direct light")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   app.add_option("--filter", o->filter, "pixel filter")->check(among(kFilters, {"scene"}))->capture_default_str();
-  app.add_option("--seed", s.seed, "another seed, another noise")->capture_default_str();
+  app.add_option("--seed", s.seed, "another seed, another noise")->check(wholeNumber())->capture_default_str();
   app.add_option("--threads", s.threads, "0: all; the image does not depend on it")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   app.add_option("--resolution", o->resolution, "WIDTHxHEIGHT instead of the scene's");
-  app.add_option("--layer", o->layer, "first part of the EXR's channel names")->capture_default_str();
+  app.add_option("--layer", o->layer, "first part of the EXR's channel names")
+      ->check(named(kLongestLayer))
+      ->capture_default_str();
   app.add_option("--passes", o->passes, "of combined,depth,normal,albedo,variance,allocation (default: all)");
   app.add_option("--kernel", o->kernel, "general: with everything compiled in; the image is the same")
       ->check(CLI::IsMember({"auto", "general"}))
       ->capture_default_str();
-  app.add_option("--stats", o->stats, "write statistics to this JSON file");
+  app.add_option("--stats", o->stats, "write statistics to this JSON file")->check(named());
   app.add_option("--progress", o->progress, "bar, json or none")
       ->check(CLI::IsMember({"auto", "bar", "json", "none"}))
       ->capture_default_str();
-  app.add_option("--preview", o->preview, "rewrite this EXR with the image so far");
+  app.add_option("--preview", o->preview, "rewrite this EXR with the image so far")->check(named());
   app.add_option("--preview-interval", o->previewInterval, "seconds between previews")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(between(0, 1e6))
       ->capture_default_str();
   app.add_flag("--watch-stdin", o->watchStdin, "stop when standard input is closed");
   return [o] { return run(*o); };

@@ -8,7 +8,7 @@
 #include <ImfInputPart.h>
 #include <ImfMultiPartInputFile.h>
 #include <ImfPartType.h>
-#include <ImfTestFile.h>
+#include <ImfVersion.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -75,8 +75,8 @@ RgbImage readExrRgb(const std::filesystem::path& path, const std::string& layer)
               "give an OpenEXR file, for example one that 'wardmis render' wrote");
 }
 
-RgbImage readOtherRgb(const std::filesystem::path& path) try {
-  FileImage file = readImageFile(mapFile(path).data);
+RgbImage readOtherRgb(const std::filesystem::path& path, const Bytes& bytes) try {
+  FileImage file = readImageFile(bytes.data);
   Image& from = file.image;
   from.srgb = file.integers;
   RgbImage image{from.width, from.height, {}};
@@ -103,7 +103,9 @@ void check(const std::filesystem::path& path, const char* wrong) {
 }  // namespace
 
 RgbImage readRgb(const std::filesystem::path& path, const std::string& layer) {
-  RgbImage image = Imf::isOpenExrFile(path.c_str()) ? readExrRgb(path, layer) : readOtherRgb(path);
+  const Bytes bytes = mapFile(path);  // which wants a regular file: OpenEXR would wait for whoever feeds a FIFO
+  const bool isExr = bytes.size() >= 4 && Imf::isImfMagic(reinterpret_cast<const char*>(bytes.data.data()));
+  RgbImage image = isExr ? readExrRgb(path, layer) : readOtherRgb(path, bytes);
   size_t bad = 0, first = 0;
   for (size_t i = 0; i < image.rgb.size(); ++i)
     if (!std::isfinite(image.rgb[i]) && bad++ == 0) first = i / 3;

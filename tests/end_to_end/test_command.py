@@ -53,8 +53,8 @@ class Usage(CommandTest):
     def test_mistakes_end_with_2(self):
         render = "render", self.scene(), "-o", self.out
         for arguments, says in (
-            ((), "--help"),
-            (("paint",), "--help"),
+            ((), "a verb is missing; there are: render, info, compare"),
+            (("paint",), "there is no verb 'paint'; there are: render, info, compare"),
             (("render",), "SCENE"),
             (("render", self.scene()), "--output"),
             ((*render, "--sppp", "4"), "--sppp"),
@@ -71,6 +71,19 @@ class Usage(CommandTest):
             ((*render, "--passes", "combined,beauty"), "beauty"),
             (("render", self.scene(), "-o", self.folder / "out.png"), "ends in .exr"),
             ((*render, "--preview", self.folder / "preview"), "ends in .exr"),
+            (("render", self.scene(), "-o", ""), "--output: is empty"),
+            ((*render, "--layer", ""), "--layer: is empty"),
+            ((*render, "--layer", "x" * 201), "--layer: has 201 bytes"),
+            ((*render, "--seed", "-1"), "'-1' is not a whole number"),
+            ((*render, "--seed", str(2**64)), "is not a whole number"),
+            ((*render, "--time", "nan"), "'nan' is not a number"),
+            ((*render, "--spp", "4", "--spp", "5"), "--spp is given more than once"),
+            ((*render, "--stats", self.out), "is named by both --output and --stats"),
+            ((*render, "--preview", self.folder / "." / "out.exr"), "is named by both --output and --preview"),
+            ((*render, "--stats", self.scene()), "is named by both SCENE and --stats"),
+            (("compare", self.out, self.out, "--max-relmse", "nan"), "'nan' is not a number"),
+            (("compare", self.out, self.scene(), "--difference", self.out), "both IMAGE and --difference"),
+            (("compare", self.scene(), self.out, "--difference", self.out), "both REFERENCE and --difference"),
         ):
             with self.subTest(arguments=arguments):
                 self.refused(2, *arguments, says=[says])
@@ -424,6 +437,18 @@ class Compare(CommandTest):
         bad = self.folder / "bad.exr"
         bad.write_bytes(self.reference.read_bytes()[:200])
         self.refused(4, "compare", bad, self.reference, says=["bad.exr"])
+
+    def test_pipe_is_refused_not_waited_for(self):
+        pipe = self.folder / "pipe"
+        os.mkfifo(pipe)
+        self.refused(4, "compare", pipe, self.reference, says=["pipe", "not a regular file"])
+        self.refused(4, "compare", self.reference, pipe, says=["pipe", "not a regular file"])
+        self.refused(4, "compare", self.reference, self.reference, "--difference", pipe, says=["pipe", "not a file"])
+
+    def test_layers_with_dots(self):
+        self.render("--spp", "1", "--layer", "Layer.001")
+        self.run_command("compare", self.out, self.out)
+        self.run_command("compare", self.out, self.out, "--layer", "Layer.001")
 
     def test_own_images(self):
         """A layer is found by itself, or named."""

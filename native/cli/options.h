@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Checks of options that CLI11's own let through: NaN in a range, "-1" as a large number, nothing as a name.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+
+namespace wardmis {
+
+// A finite number in [low, high].
+CLI::Validator between(double low, double high);
+
+// A whole number of 64 bits without a sign, for --seed.
+CLI::Validator wholeNumber();
+
+// A name or path of at least one and at most `longest` bytes.
+CLI::Validator named(size_t longest = SIZE_MAX);
+
+}  // namespace wardmis
