@@ -189,7 +189,7 @@ Array<uint32_t> Meshes::withoutDegenerate(const Json& place, Array<uint32_t> ind
   for (const size_t t : bad) {
     if (!(squaredArea(t) <= FLT_MAX))
       place.fail(fmt::format("triangle {} is too large for single precision", t),
-                 "model in metres, and smaller than 10^9 of them");
+                 "scale it down: at most 9 * 10^18 square metres can be used");
     kept.insert(kept.end(), indices.data.begin() + from, indices.data.begin() + 3 * t);
     from = 3 * t + 3;
   }

@@ -18,9 +18,9 @@ uint32_t needs(const Material& m) {
 
 uint32_t needs(const Light&) { return kNeedsLightSampling; }
 
-uint32_t needs(const Camera& c) { return c.lensRadius > 0 ? kNeedsLens : 0; }
+uint32_t needs(const Camera& c) { return c.lensRadius > 0 ? kNeedsLens : 0u; }
 
-uint32_t needs(const World& w) { return maxComponent(w.radiance) > 0 ? kNeedsEnvironment : 0; }
+uint32_t needs(const World& w) { return maxComponent(w.radiance) > 0 ? kNeedsEnvironment : 0u; }
 
 uint32_t needs(const Scene& scene, const Geometry& geometry, const Emitters& emitters, bool joint) {
   uint32_t n = needs(scene.world);
