@@ -62,6 +62,9 @@ class Lights(SceneTest):
         obj.data.color, obj.data.energy = (1, 1, 1), float("inf")
         with self.assertRaises(ExportError):
             self.gather()
+        obj.data.energy, obj.data.shadow_soft_size = 1, float("nan")
+        with self.assertRaisesRegex(ExportError, "light 'Light': its radius is not a finite number"):
+            self.gather()
 
     def test_point_light(self):
         self.light("POINT", shadow_soft_size=0.5, color=(1, 0.5, 0.25))
@@ -93,6 +96,15 @@ class Lights(SceneTest):
                 expected = 2 if NEW or h == 0 else 2 * 2 * (1 / math.cos(h) - 1) / math.tan(h) ** 2
                 self.assertAlmostEqual(self.only().emission, expected, 4)
                 bpy.data.objects.remove(obj)
+
+    def test_sun_as_wide_as_the_sky(self):
+        self.light("SUN", angle=math.pi)
+        scene = self.gather()
+        if NEW:
+            self.assertAlmostEqual(scene.lights[0].emission, 100, 4)
+        else:  # its disk is infinitely far aside
+            self.assertEqual(scene.lights, [])
+            self.assertIn("light 'Light': a sun as wide as the sky gives no light", scene.notes[0])
 
     def test_exposure_temperature_and_normalization(self):
         obj = self.light("AREA", size=2, shape="SQUARE")
@@ -183,6 +195,8 @@ class Camera(SceneTest):
         camera = self.gather().camera
         self.assertAlmostEqual(camera.lens_radius, 0.035 / 2.8, 6)
         self.assertEqual((camera.focus_distance, camera.blades), (3, 5))
+        dof.focus_distance = 0
+        self.assertEqual(self.gather().camera.focus_distance, 1e-5)  # as in Cycles
         focus = self.add("Focus", None)
         focus.location = (2, 0, -7)
         dof.focus_object, dof.aperture_blades, self.camera.data.type = focus, 2, "ORTHO"
@@ -190,6 +204,11 @@ class Camera(SceneTest):
         self.assertAlmostEqual(camera.focus_distance, 7, 5)
         self.assertAlmostEqual(camera.lens_radius, 1 / 2.8, 6)
         self.assertEqual(camera.blades, 0)
+
+    def test_number_that_is_not_finite(self):
+        self.camera.data.shift_x = math.nan
+        with self.assertRaisesRegex(ExportError, "camera 'Camera': its view plane is not a finite number"):
+            self.gather()
 
     def test_no_camera(self):
         self.scene.camera = None
@@ -239,6 +258,12 @@ class World(SceneTest):
 
     def test_background(self):
         np.testing.assert_allclose(self.gather().world.radiance, (0.2, 0.4, 0.8))
+
+    def test_background_that_is_not_finite(self):
+        self.background.inputs["Strength"].default_value = math.nan
+        scene = self.gather()
+        self.assertEqual(scene.world.radiance, (1, 0, 1))
+        self.assertIn("world 'World': its radiance is not a finite number", scene.notes[0])
 
     def test_color_without_nodes(self):
         if compat.VERSION >= (5, 0, 0):

@@ -207,6 +207,28 @@ class NotUnderstood(MaterialCase):
         self.assertRgb(self.export(mix).diffuse.value, MAGENTA)
         self.assertNoted("linked in a circle")
 
+    def test_numbers_that_are_not_finite_are_magenta_and_named(self):
+        ward = self.node("WardBSDFNode")
+        ward.inputs["Rotation"].default_value = math.nan
+        alpha = self.node("WardBSDFNode")
+        alpha.inputs["Alpha X"].default_value = math.nan
+        huge = self.node("ShaderNodeEmission", Color=(1e38, 1, 1, 1), Strength=1e38)
+        for node, name in (
+            (self.node("ShaderNodeBsdfDiffuse", Color=(math.nan, 1, 1, 1)), "has a 'Color'"),
+            (ward, "has a 'Rotation'"),
+            (alpha, "has a 'Alpha X'"),
+            (huge, "its emission"),
+        ):
+            with self.subTest(name):
+                self.context.notes.clear()
+                data = self.export(node)
+                self.assertRgb(data.diffuse.value, MAGENTA)
+                self.assertFalse(any(data.emission.value))
+                self.assertNoted("material 'M' on object 'O'", name, "not a finite number")
+        self.material.use_nodes = False
+        self.material.diffuse_color = (1, math.nan, 1, 1)
+        self.assertRgb(self.export().diffuse.value, MAGENTA)
+
     def test_missing_images_are_magenta_and_named(self):
         diffuse = self.node("ShaderNodeBsdfDiffuse")
         texture = self.texture(None)

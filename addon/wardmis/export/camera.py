@@ -10,6 +10,8 @@ import numpy as np
 from .context import ExportError
 from .model import CameraData, FilmData
 
+NEAREST_FOCUS = 1e-5  # Cycles' own
+
 
 def full_resolution(render: Any) -> tuple[int, int]:
     """The pixels of the frame without its border, rounded down as Blender does."""
@@ -73,7 +75,7 @@ def export_camera(camera: Any, render: Any) -> CameraData:
     if data.dof.use_dof:
         aperture = data.dof.aperture_fstop * 2
         result.lens_radius = (1.0 if orthographic else data.lens * 1e-3) / aperture
-        result.focus_distance = _focus_distance(camera, data.dof, matrix)
+        result.focus_distance = max(_focus_distance(camera, data.dof, matrix), NEAREST_FOCUS)
         result.blades = data.dof.aperture_blades if data.dof.aperture_blades > 2 else 0
         result.blade_rotation = data.dof.aperture_rotation
         result.blade_ratio = data.dof.aperture_ratio

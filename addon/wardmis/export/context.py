@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from .model import ImageData, TextureData
+from .model import ImageData, TextureData, not_finite
 
 WRAPS = {"REPEAT": "repeat", "EXTEND": "clamp", "CLIP": "clamp", "MIRROR": "mirror"}
 
@@ -47,8 +47,8 @@ class ExportContext:
         # the library is part of the name: two linked images may be called the same
         key = image.name_full
         if key not in self._image_index:
-            self._image_index[key] = len(self.images)
             self.images.append(self._export_image(image))
+            self._image_index[key] = len(self.images) - 1
         if extension == "CLIP":
             self.note(f"image '{image.name}': extension Clip is not supported; its border pixels are repeated instead")
         texture = TextureData(self._image_index[key], WRAPS[extension], interpolation == "Closest")
@@ -57,6 +57,12 @@ class ExportContext:
             self._texture_index[texture_key] = len(self.textures)
             self.textures.append(texture)
         return self._texture_index[texture_key]
+
+    def check_finite(self, data: Any, owner: str) -> None:
+        """ExportError where a number of `data`, one of model.py's, is none that can be rendered."""
+        wrong = not_finite(data)
+        if wrong is not None:
+            raise ExportError(f"{owner}: its {wrong} is not a finite number; correct it")
 
     def check_cancelled(self) -> None:
         """Cheap enough to be called for every object; asks at most ten times a second."""

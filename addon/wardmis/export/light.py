@@ -41,6 +41,10 @@ def export_light(
     if not np.isfinite(data.emission):
         context.note(f"light '{light.name}': its area is zero, so that it gives no light; set a size or a scale")
         return None
+    context.check_finite(data, f"light '{light.name}'")
+    if data.emission == 0:
+        context.note(f"light '{light.name}': a sun as wide as the sky gives no light in this Blender; lower its angle")
+        return None
     return data
 
 
@@ -95,4 +99,5 @@ def _sun(light: Any, power: float, data: LightData) -> None:
     if half > 0 and not compat.light_is_normalized(light):
         data.emission *= math.pi * math.sin(half) ** 2
     elif not compat.LIGHTS_OF_4_0:
-        data.emission *= 2 * math.cos(half) / (1 + math.cos(half))
+        cosine = max(0.0, math.cos(half))  # of 90 degrees it may be just below
+        data.emission *= 2 * cosine / (1 + cosine)

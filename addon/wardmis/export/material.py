@@ -13,9 +13,9 @@ import numpy as np
 from .. import compat
 from .context import ExportContext
 from .emission import MISSING
-from .model import MaterialData
+from .model import MaterialData, not_finite
 from .tree import MUTED, NodeUse, place
-from .value import BLACK, Calculator, Value, calculator, constant, grey, read, read_number
+from .value import BLACK, Calculator, NotFinite, Value, calculator, constant, grey, read, read_number
 
 
 @dataclass(frozen=True)
@@ -35,13 +35,19 @@ FALLBACK = Surface(diffuse=constant(MISSING))
 
 
 def export_material(material: Any, context: ExportContext) -> MaterialData:
+    where = place(material.name, context)
     try:
-        return _translate(
-            material, context, _surface_of(material, context) if compat.uses_nodes(material) else _plain(material)
-        )
+        surface = _surface_of(material, context) if compat.uses_nodes(material) else _plain(material)
+        data = _translate(material, context, surface)
+        wrong = not_finite(data)  # what the nodes make of finite numbers may still be none
+        if wrong is None:
+            return data
+        context.note(f"{where}: its {wrong} is not a finite number; rendered as magenta")
+    except NotFinite:
+        pass  # noted where it was found
     except RecursionError:  # Blender lets users link nodes in a circle; Cycles renders such a material black
-        context.note(f"{place(material.name, context)} has nodes that are linked in a circle; rendered as magenta")
-        return _translate(material, context, FALLBACK)
+        context.note(f"{where} has nodes that are linked in a circle; rendered as magenta")
+    return _translate(material, context, FALLBACK)
 
 
 def _translate(material: Any, context: ExportContext, surface: Surface) -> MaterialData:

@@ -7,12 +7,27 @@ Matrices are row-major 4x4 numpy arrays in Blender's axes (Z up); the writer add
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, is_dataclass
+from typing import Any
 
 import numpy as np
 
 Rgb = tuple[float, float, float]
 IDENTITY_TRANSFORM = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
+LARGEST = float(np.finfo(np.float32).max)  # the renderer computes in single precision
+
+
+def not_finite(data: Any) -> str | None:
+    """Of one of the dataclasses here: what holds a NaN, or a number too large for the renderer, in words; None if nothing does."""
+    for entry in fields(data):
+        value = getattr(data, entry.name)
+        if is_dataclass(value):
+            wrong = not_finite(value) is not None
+        else:
+            wrong = isinstance(value, (float, tuple, np.ndarray)) and not (np.abs(value) <= LARGEST).all()
+        if wrong:
+            return entry.name.replace("_", " ")
+    return None
 
 
 @dataclass

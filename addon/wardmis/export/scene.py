@@ -41,6 +41,8 @@ def gather_scene(
     gatherer = _Gatherer(depsgraph, context)
     _note_scene_settings(scene, context)
     camera_data = export_camera(camera.evaluated_get(depsgraph) if camera else None, scene.render)
+    context.check_finite(film, "the scene's film")
+    context.check_finite(camera_data, f"camera '{camera_data.name}'")
     gatherer.gather_objects(depsgraph)
     world = export_world(compat.world_of(depsgraph.view_layer_eval, scene), context)
     return SceneData(

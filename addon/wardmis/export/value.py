@@ -25,6 +25,10 @@ LUMINANCE = np.array((0.2126, 0.7152, 0.0722))  # of linear Rec. 709
 Function = Callable[..., Any]  # of arrays (..., 3) to one
 
 
+class NotFinite(Exception):
+    """A number in the material is NaN or infinite, and has been named in a note."""
+
+
 @dataclass(frozen=True)
 class Lookup:
     """Which texel: two values with equal look-ups see the same one."""
@@ -112,12 +116,12 @@ class Calculator:
         return self.apply("grey", grey, a)
 
     def color_input(self, a: Value) -> ColorInput:
-        r, g, b = (max(0.0, float(x)) for x in a.factor)
+        r, g, b = (float(x) for x in np.maximum(a.factor, 0.0))  # a NaN stays one
         return ColorInput((r, g, b), self._texture(a, 3) if a.lookup and not a.is_black else None)
 
     def scalar_input(self, a: Value) -> ScalarInput:
         a = self.grey(a)
-        return ScalarInput(max(0.0, float(a.factor[0])), self._texture(a, 1) if a.lookup else None)
+        return ScalarInput(float(np.maximum(a.factor[0], 0.0)), self._texture(a, 1) if a.lookup else None)
 
     def _texture(self, a: Value, channels: int) -> TextureUse:
         assert a.lookup is not None
@@ -140,7 +144,7 @@ def read(use: NodeUse, key: str | int) -> Value:
     """What an input socket receives."""
     output, origin = use.origin(key)
     if origin is None:
-        return BLACK if output is MUTED else constant(output.default_value)
+        return BLACK if output is MUTED else _own_value(use, output)
     converter = CONVERTERS.get(origin.node.bl_idname)
     value = converter(origin, output) if converter else None
     if value is not None:
@@ -148,7 +152,7 @@ def read(use: NodeUse, key: str | int) -> Value:
         return calculator(use).grey(value) if use.node.inputs[key].type == "VALUE" else value
     socket = use.node.inputs[key]
     origin.note(f"is not supported as a colour or number; the constant of input '{socket.name}' is used instead")
-    return constant(socket.default_value)
+    return _own_value(use, socket)
 
 
 def read_number(use: NodeUse, key: str | int) -> float:
@@ -327,8 +331,13 @@ def _combine(use: NodeUse, _output: Any) -> Value | None:
     return calculator(use).apply("combine", function, read(use, 0), read(use, 1), read(use, 2))
 
 
-def _own_value(_use: NodeUse, output: Any) -> Value:
-    return constant(output.default_value)
+def _own_value(use: NodeUse, socket: Any) -> Value:
+    """What is typed into a socket: of an input, or of a node that is nothing but a value."""
+    value = constant(socket.default_value)
+    if not np.isfinite(value.factor).all():
+        use.note(f"has a '{socket.name}' that is not a finite number; the material is rendered as magenta")
+        raise NotFinite
+    return value
 
 
 CONVERTERS: dict[str, Callable[[NodeUse, Any], Value | None]] = {

@@ -11,12 +11,21 @@ from .. import compat
 from .context import ExportContext
 from .emission import MISSING, constant_color, note_unsupported, source, strength, surface
 from .image import deviations, missing
-from .model import WorldData
+from .model import WorldData, not_finite
 
 
 def export_world(world: Any, context: ExportContext) -> WorldData:
     if world is None:
         return WorldData()
+    data = _translate(world, context)
+    wrong = not_finite(data)
+    if wrong is not None:
+        context.note(f"world '{world.name}': its {wrong} is not a finite number; magenta is shown instead")
+        return WorldData(MISSING)
+    return data
+
+
+def _translate(world: Any, context: ExportContext) -> WorldData:
     if not compat.uses_nodes(world):
         return WorldData(tuple(world.color))
     _note_settings(world, context)
