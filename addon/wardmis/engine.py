@@ -95,6 +95,7 @@ class _Render:
         self.width, self.height = x1 - x0, y1 - y0
         self.result: Any = None
         self.notes: set[str] = set()
+        self.started = False
         self.statistics: dict[str, Any] = {}
 
     def run(self) -> None:
@@ -184,7 +185,8 @@ class _Render:
         for event in renderer.finish():
             self._handle(event)
         if not self.image_path.is_file():
-            raise RendererError(f"the renderer ended without an image{renderer.said()}")
+            doubt = "" if self.started else "; it never said that it started, so that it may be another program"
+            raise RendererError(f"the renderer {renderer.path} ended without an image{doubt}{renderer.said()}")
 
     def _handle(self, event: dict[str, Any]) -> None:
         try:
@@ -198,6 +200,7 @@ class _Render:
     def _act_on(self, event: dict[str, Any]) -> None:
         kind = event.get("event")
         if kind == "start":
+            self.started = True
             for note in event.get("notes", []):
                 self._warn(note)
         elif kind == "progress":

@@ -85,6 +85,7 @@ class Renderer:
     """A running renderer. Leaving the `with` block ends it in any case."""
 
     def __init__(self, command: list[str]) -> None:
+        self.path = command[0]
         self._events: queue.SimpleQueue[dict[str, Any]] = queue.SimpleQueue()
         self._tail: deque[str] = deque(maxlen=6)  # of what it said besides events
         self._error: dict[str, Any] | None = None

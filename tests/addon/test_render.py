@@ -181,7 +181,13 @@ class Failures(RenderTest):
         self.check("exit code 4) without a message", fake="silent")
 
     def test_garbage_instead_of_events(self):
-        self.check("ended without an image; it said: ", fake="garbage")
+        self.check(
+            "ended without an image; it never said that it started, so that it may be another program; it said: ",
+            fake="garbage",
+        )
+
+    def test_another_program(self):
+        self.check("the renderer /bin/true ended without an image; it never said", WARDMIS_BINARY="/bin/true")
 
     def test_no_image(self):
         self.check("ended without an image", MULTILAYER, fake="nothing")
