@@ -146,14 +146,14 @@ class MemoryStream : public Imf::IStream {
  public:
   explicit MemoryStream(Bytes file) : IStream("image"), file_(file) {}
   bool read(char to[], int count) override {
-    if (count < 0 || uint64_t(count) > file_.size() - position_) throw std::runtime_error("the file ends too early");
+    if (count < 0 || uint64_t(count) > file_.size() - position_) throw Iex::BaseExc("the file ends too early");
     std::memcpy(to, file_.data() + position_, size_t(count));
     position_ += uint64_t(count);
     return position_ < file_.size();
   }
   uint64_t tellg() override { return position_; }
   void seekg(uint64_t position) override {
-    if (position > file_.size()) throw std::runtime_error("an offset lies beyond the end of the file");
+    if (position > file_.size()) throw Iex::BaseExc("an offset lies beyond the end of the file");
     position_ = position;
   }
 

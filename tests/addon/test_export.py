@@ -303,6 +303,15 @@ class Instances(SceneTest):
         print(f"[{seconds:.2f} s]", end=" ")
         self.assertLess(seconds, 1.0)
 
+    def test_scale_of_zero_is_named_and_left_out(self):
+        self.add_quad("Seen")
+        self.add_quad("Flat").scale.z = 0
+        scene = self.gather()
+        self.assertEqual([i.name for i in scene.instances], ["Seen"])
+        self.assertEqual(scene.notes, ["object 'Flat': a scale of 0 cannot be rendered; left out"])
+        self.add_quad("Gone").scale = (0, 0, 0)
+        self.assertEqual(self.gather().notes, ["object 'Flat' and 1 more: a scale of 0 cannot be rendered; left out"])
+
     def test_transform_that_is_not_finite(self):
         self.add_quad("Lost").location.x = math.nan
         with self.assertRaisesRegex(ExportError, "object 'Lost': its transform is not finite"):

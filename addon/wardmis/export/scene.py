@@ -24,6 +24,8 @@ NO_MATERIAL = MaterialData("(no material)", diffuse=ColorInput((0.8, 0.8, 0.8)))
 SEEN_AS_MESHES = {"CURVE", "SURFACE", "META", "FONT"}
 # Blender draws them over the image of any engine
 DRAWN_BY_BLENDER = {"GPENCIL", "GREASEPENCIL"}
+# of a transform that the renderer can invert in single precision
+SMALLEST_DETERMINANT = 1e-37
 INVISIBLE = {"EMPTY", "CAMERA", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE"}
 
 
@@ -104,6 +106,19 @@ class _Gatherer:
                     self.lights.append(light)
             elif kind not in SEEN_AS_MESHES | DRAWN_BY_BLENDER:
                 self.context.note(f"object '{obj.name}': {kind.lower()} objects are not supported; it is left out")
+        self._leave_out_flattened()
+
+    def _leave_out_flattened(self) -> None:
+        """All at once: one matrix at a time would be slow for many instances."""
+        if not self.instances:
+            return
+        determinants = np.linalg.det(np.array([instance.matrix[:3, :3] for instance in self.instances]))
+        flat = np.abs(determinants) < SMALLEST_DETERMINANT
+        names = sorted({instance.name for instance, is_flat in zip(self.instances, flat) if is_flat})
+        if names:
+            others = f" and {len(names) - 1} more" if len(names) > 1 else ""
+            self.context.note(f"object '{names[0]}'{others}: a scale of 0 cannot be rendered; left out")
+            self.instances = [instance for instance, is_flat in zip(self.instances, flat) if not is_flat]
 
     def _matrix(self, instance: Any) -> np.ndarray:
         matrix = np.array(instance.matrix_world)  # a copy: the instance lives for one step of the iteration

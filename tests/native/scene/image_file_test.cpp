@@ -150,6 +150,14 @@ TEST(ImageFile, ExrIsReadInFullRange) {
         EXPECT_EQ(image.floats[((kHeight - 1 - y) * kWidth + x) * 3 + c], 100000.0f * float(valueAt(y, x, c)));
   EXPECT_EQ(readImageFile(exrFile({"Y"})).image.channels, 1);
   EXPECT_THROW(readImageFile(exrFile({"depth.Z"})), std::runtime_error);
+  File cut = exrFile({"Y"});
+  cut.pop_back();
+  try {
+    readImageFile(cut);
+    ADD_FAILURE() << "nothing was thrown";
+  } catch (const std::runtime_error& e) {
+    EXPECT_TRUE(std::string_view(e.what()).starts_with("is a damaged OpenEXR file: ")) << e.what();
+  }
 }
 
 // Through OpenImageIO. 2 pixels of Radiance's flat rows: (128, 64, 32) * 2^(130 - 136).
