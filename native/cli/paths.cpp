@@ -20,8 +20,7 @@ void checkWritable(const std::string& path) {
   if (!fs::is_directory(folder))
     throw Error(ExitCode::kFile, fmt::format("{}: its folder does not exist", path),
                 "make the folder, or choose another one");
-  if (fs::is_directory(path))
-    throw Error(ExitCode::kFile, fmt::format("{}: is a folder", path), "name a file in it");
+  if (fs::is_directory(path)) throw Error(ExitCode::kFile, fmt::format("{}: is a folder", path), "name a file in it");
   if (fs::exists(path) && !fs::is_regular_file(path))  // /dev/null would be replaced
     throw Error(ExitCode::kFile, fmt::format("{}: is a device, not a file", path), "name a file");
   // By doing it: access() grants root what some file systems then refuse.

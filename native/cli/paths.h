@@ -13,7 +13,8 @@ struct NamedFile {
   const std::string& path;
 };
 
-// Throws Error(kFile) unless `path` can become a file: its folder exists and is writable, and it is no device or folder.
+// Throws Error(kFile) unless `path` can become a file: its folder exists and is writable, and it is no device or
+// folder.
 void checkWritable(const std::string& path);
 
 // Throws Error(kUsage) if two of them are the same file, of which one would replace the other.

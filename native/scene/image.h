@@ -19,7 +19,7 @@ enum class ColorSpace : uint8_t { kAuto, kSrgb, kLinear };
 struct DecodedImage {
   Image image;
   uint64_t mended = 0;  // values that were not finite, or negative, and were set to 0
-  std::string damage;   // why it is not what the file should hold but one magenta texel, Blender's sign for a lost image
+  std::string damage;  // why it is not what the file should hold but one magenta texel, Blender's sign for a lost image
 };
 
 constexpr int kLargestImageSide = 1 << 16;

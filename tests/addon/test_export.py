@@ -314,9 +314,11 @@ class Instances(SceneTest):
         self.add_quad("Flat").scale.z = 0
         scene = self.gather()
         self.assertEqual([i.name for i in scene.instances], ["Seen"])
-        self.assertEqual(scene.notes, ["object 'Flat': a scale of 0 cannot be rendered; left out"])
+        self.assertEqual(scene.notes, ["object 'Flat': a scale of 0, or next to it, cannot be rendered; left out"])
         self.add_quad("Gone").scale = (0, 0, 0)
-        self.assertEqual(self.gather().notes, ["object 'Flat' and 1 more: a scale of 0 cannot be rendered; left out"])
+        self.assertEqual(
+            self.gather().notes, ["object 'Flat' and 1 more: a scale of 0, or next to it, cannot be rendered; left out"]
+        )
 
     def test_transform_that_is_not_finite(self):
         self.add_quad("Lost").location.x = math.nan

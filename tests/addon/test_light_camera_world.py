@@ -197,6 +197,9 @@ class Camera(SceneTest):
         self.assertEqual((camera.focus_distance, camera.blades), (3, 5))
         dof.focus_distance = 0
         self.assertEqual(self.gather().camera.focus_distance, 1e-5)  # as in Cycles
+        dof.aperture_fstop = 0
+        self.assertAlmostEqual(self.gather().camera.lens_radius, 0.035 / 2e-5, 1)
+        dof.aperture_fstop = 1.4
         focus = self.add("Focus", None)
         focus.location = (2, 0, -7)
         dof.focus_object, dof.aperture_blades, self.camera.data.type = focus, 2, "ORTHO"
@@ -208,6 +211,11 @@ class Camera(SceneTest):
     def test_number_that_is_not_finite(self):
         self.camera.data.shift_x = math.nan
         with self.assertRaisesRegex(ExportError, "camera 'Camera': its view plane is not a finite number"):
+            self.gather()
+
+    def test_clip_distances_the_wrong_way_round(self):
+        self.camera.data.clip_start = 1e6
+        with self.assertRaisesRegex(ExportError, "camera 'Camera' sees nothing: its Clip Start"):
             self.gather()
 
     def test_no_camera(self):
@@ -264,6 +272,12 @@ class World(SceneTest):
         scene = self.gather()
         self.assertEqual(scene.world.radiance, (1, 0, 1))
         self.assertIn("world 'World': its radiance is not a finite number", scene.notes[0])
+
+    def test_negative_background_is_noted(self):
+        self.background.inputs["Strength"].default_value = -1
+        scene = self.gather()
+        self.assertEqual(scene.world.radiance, (0, 0, 0))
+        self.assertIn("world 'World': negative light is not supported", scene.notes[0])
 
     def test_color_without_nodes(self):
         if compat.VERSION >= (5, 0, 0):

@@ -10,7 +10,9 @@ import numpy as np
 from .context import ExportError
 from .model import CameraData, FilmData
 
-NEAREST_FOCUS = 1e-5  # Cycles' own
+# Cycles' own limits
+NEAREST_FOCUS = 1e-5
+SMALLEST_FSTOP = 1e-5
 
 
 def full_resolution(render: Any) -> tuple[int, int]:
@@ -65,6 +67,8 @@ def export_camera(camera: Any, render: Any) -> CameraData:
             f"camera '{camera.name}' has a scale of zero or a transform that is not finite; set its scale to 1"
         )
     matrix[:3, :3] /= lengths
+    if data.clip_start >= data.clip_end:
+        raise ExportError(f"camera '{camera.name}' sees nothing: its Clip Start is not below its Clip End; correct it")
     result = CameraData(
         camera.name,
         matrix,
@@ -73,7 +77,7 @@ def export_camera(camera: Any, render: Any) -> CameraData:
         (data.clip_start, data.clip_end),
     )
     if data.dof.use_dof:
-        aperture = data.dof.aperture_fstop * 2
+        aperture = max(data.dof.aperture_fstop, SMALLEST_FSTOP) * 2
         result.lens_radius = (1.0 if orthographic else data.lens * 1e-3) / aperture
         result.focus_distance = max(_focus_distance(camera, data.dof, matrix), NEAREST_FOCUS)
         result.blades = data.dof.aperture_blades if data.dof.aperture_blades > 2 else 0

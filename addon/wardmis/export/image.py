@@ -61,7 +61,8 @@ def _reason_missing(image: Any) -> str | None:
         return "a render or viewer result cannot be read as a texture; save it as a file"
     path = _path(image)
     if image.source == "FILE" and not image.is_dirty and not image.packed_file and not os.path.isfile(path):
-        return f"its file '{path}' is {'a folder' if os.path.isdir(path) else 'missing'}"
+        kind = "a folder" if os.path.isdir(path) else "a device or a pipe" if os.path.exists(path) else "missing"
+        return f"its file '{path}' is {kind}"
     if 0 in image.size:  # Blender has tried: a damaged file, too, is better found here than by the renderer
         return f"it cannot be read from '{path}'"
     return None

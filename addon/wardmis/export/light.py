@@ -15,7 +15,7 @@ import numpy as np
 from .. import compat
 from .context import ExportContext, ExportError
 from .emission import constant_color, note_unsupported, strength, surface
-from .model import LightData, Rgb
+from .model import LARGEST, LightData, Rgb
 
 
 def export_light(
@@ -28,7 +28,7 @@ def export_light(
     power = light.energy * compat.light_exposure(light)
     temperature = compat.light_temperature_color(light)
     color = tuple(c * t * n for c, t, n in zip(light.color, temperature, node_factor))
-    if not np.isfinite((power, *color)).all():
+    if not (np.abs((power, *color, power * max(color))) <= LARGEST).all():
         raise ExportError(f"light '{light.name}': its power or colour is not a finite number; correct it")
     if power < 0 or min(color) < 0:
         context.note(f"light '{light.name}': negative light is not supported; the light is left out")
@@ -38,7 +38,7 @@ def export_light(
     data = LightData(name, light.type.lower(), matrix, color, 0.0, hidden_from=hidden_from)
     data.shadow = compat.light_casts_shadow(light)
     {"AREA": _area, "POINT": _point, "SPOT": _spot, "SUN": _sun}[light.type](light, power, data)
-    if not np.isfinite(data.emission):
+    if math.isinf(data.emission):
         context.note(f"light '{light.name}': its area is zero, so that it gives no light; set a size or a scale")
         return None
     context.check_finite(data, f"light '{light.name}'")

@@ -117,7 +117,7 @@ class _Gatherer:
         names = sorted({instance.name for instance, is_flat in zip(self.instances, flat) if is_flat})
         if names:
             others = f" and {len(names) - 1} more" if len(names) > 1 else ""
-            self.context.note(f"object '{names[0]}'{others}: a scale of 0 cannot be rendered; left out")
+            self.context.note(f"object '{names[0]}'{others}: a scale of 0, or next to it, cannot be rendered; left out")
             self.instances = [instance for instance, is_flat in zip(self.instances, flat) if not is_flat]
 
     def _matrix(self, instance: Any) -> np.ndarray:

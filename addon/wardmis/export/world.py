@@ -22,6 +22,10 @@ def export_world(world: Any, context: ExportContext) -> WorldData:
     if wrong is not None:
         context.note(f"world '{world.name}': its {wrong} is not a finite number; magenta is shown instead")
         return WorldData(MISSING)
+    if min(data.radiance) < 0:
+        context.note(f"world '{world.name}': negative light is not supported; none is used instead")
+        r, g, b = (max(0.0, c) for c in data.radiance)
+        data.radiance = (r, g, b)
     return data
 
 

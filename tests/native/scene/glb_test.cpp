@@ -451,7 +451,8 @@ TEST(Glb, MendsImages) {
 TEST(Glb, ShowsDamagedImagesInMagenta) {
   GlbBuilder b = textured(ward({{"diffuse", {{"texture", {{"index", 0}}}}}}));
   b.root["textures"] = {{{"source", 0}}};
-  b.root["images"] = json::array({{{"name", "Wood"}, {"bufferView", b.view<uint8_t>({0x89, 'P', 'N', 'G', 13, 10, 26, 10, 0})}}});
+  b.root["images"] =
+      json::array({{{"name", "Wood"}, {"bufferView", b.view<uint8_t>({0x89, 'P', 'N', 'G', 13, 10, 26, 10, 0})}}});
   const Scene s = read(b.bytes());
   ASSERT_EQ(s.images.size(), 1u);
   EXPECT_EQ(s.images[0].bytes, (std::vector<uint8_t>{255, 0, 255}));
