@@ -84,7 +84,127 @@ def furnace():
     empty_world()
 
 
-SCENES = {"teapot": teapot, "veach": veach, "veach-glossiness": veach_glossiness, "furnace": furnace}
+# ---- what is hard on the arithmetic: each scene holds one extreme, and is otherwise as plain as can be ---------------
+
+
+def stiff_mirror():
+    """A plate of alpha = 1e-4 under a pin-point light and a bright sky, and two posts that reflect nothing."""
+    stiff()
+    add_mesh("Plate", *square(4), ward("Mirror", BLACK, (0.9, 0.8, 0.7), 1e-4, "ward-gmd"))
+    for number, (x, y, height) in enumerate(((-1.5, 0.5, 1.25), (1.25, 1.5, 1.75)), 1):
+        post = add_mesh(f"Post {number}", *box_mesh(), ward(f"Post {number}", BLACK, BLACK, 0.3, "ward-gmd"))
+        post.location, post.scale = (x, y, height / 2), (0.25, 0.25, height / 2)
+    add_point((0, 1, 1), 3.0, 0.01)
+    add_camera((0, -6, 2.5), (0, 0.5, 0.6), 45)
+    empty_world().nodes["Background"].inputs["Color"].default_value = (0.5, 0.65, 0.9, 1)
+
+
+def stiff_grazing():
+    """Strips, smooth and rough in each variant, seen from 5 cm above them: far away at less than a tenth of a degree."""
+    stiff()
+    height, near, far, width = 0.05, 0.25, 40.0, 0.035  # the width at a distance of 1
+    for number, (alpha, variant) in enumerate((a, v) for a in (0.01, 0.5) for v in ("ward", "ward-dur", "ward-gmd")):
+        left, right = (number - 3) * width, (number - 2) * width
+        corners = [(left * near, near, 0), (right * near, near, 0), (right * far, far, 0), (left * far, far, 0)]
+        name = f"{variant} {alpha}"
+        add_mesh(name, corners, [(0, 1, 2, 3)], ward(name, grey(0.1), grey(0.4), alpha, variant))
+    add_area((0, 45, 2.5), (0, 0, 0), 2.0, 100.0)
+    add_camera((0, 0, height), (0, 1, 0), 12)
+    empty_world().nodes["Background"].inputs["Strength"].default_value = 0.5
+
+
+def stiff_lights():
+    """A light of a tenth of a millimetre and a million watts, and a dim one of 100 m2 that lights its shadows."""
+    stiff()
+    add_mesh("Floor", *square(8), ward("Floor", grey(0.4), grey(0.2), 0.2, "ward-gmd"))
+    screen = [(-3, -1, 0), (1.5, -1, 0), (1.5, -1, 2.5), (-3, -1, 2.5)]
+    add_mesh("Screen", screen, [(0, 1, 2, 3)], ward("Screen", (0.5, 0.2, 0.1), BLACK, 0.3, "ward-gmd"))
+    add_area((-120, 160, 120), (0, 0, 0), 1e-4, 1e6)
+    add_area((0, 0, 6), (0, 0, 0), 10.0, 1e3)
+    add_camera((2, -9, 5), (0, -1.5, 0.5), 45)
+    empty_world().nodes["Background"].inputs["Strength"].default_value = 0.0
+
+
+def stiff_alphas():
+    """Tiles of one plane: the smoothest and the roughest that the node allows, and what lies between."""
+    stiff()
+    for number, alpha in enumerate((1e-6, 1e-4, 1e-2, 0.1, 1.0, 10.0)):
+        x, y = 1.5 * (number % 3 - 1), 0.75 - 1.5 * (number // 3)
+        tile = add_mesh(f"Tile {alpha:g}", *square(0.7), ward(f"{alpha:g}", grey(0.1), grey(0.6), alpha, "ward-gmd"))
+        tile.location = x, y, 0
+    add_area((-1, 4, 2.5), (-1, 0, 0), 1.5, 30.0)
+    add_camera((0, -5, 3.5), (0, 0, 0), 45)
+    empty_world().nodes["Background"].inputs["Strength"].default_value = 0.3
+
+
+def stiff_mesh():
+    """Triangles without area, vertices at one place, edges of three faces; on a lamp of such triangles too."""
+    stiff()
+    add_mesh("Floor", *square(4), ward("Floor", grey(0.4), grey(0.2), 0.3, "ward-gmd"))
+    wings = add_mesh("Wings", *broken_mesh(), ward("Wings", (0.2, 0.4, 0.5), grey(0.3), 0.15, "ward-gmd"))
+    wings.location.z = 0.1
+    smooth = add_mesh("Smooth", *broken_mesh(), ward("Smooth", (0.5, 0.4, 0.1), grey(0.3), 0.15, "ward-gmd"), True)
+    smooth.location, smooth.rotation_euler.z = (-1.6, 0.3, 0.1), 0.8
+    lamp = add_mesh("Lamp", *broken_mesh(), emitter("Lamp", 6.0))
+    lamp.location, lamp.scale = (1.5, 0.5, 0.4), (0.4, 0.4, 0.4)
+    add_camera((0.5, -5.5, 3), (0, 0, 0.5), 40)
+    empty_world().nodes["Background"].inputs["Strength"].default_value = 0.2
+
+
+def stiff_touching():
+    """A panel and a cube of light that stand on the floor, with a wall, a box, and a second box of the same mesh."""
+    court(1.0, (0, 0, 0))
+
+
+def stiff_large():
+    """The same, a thousand times as large and a million metres from the origin along every axis."""
+    court(1024.0, (1e6, 1e6, 1e6))
+
+
+def stiff_small():
+    """The same, a millionth as large."""
+    court(2.0**-20, (0, 0, 0))
+
+
+def court(size, origin):
+    """Every number is a multiple of size / 16, so that the places of the vertices hold in single precision."""
+    stiff()
+    origin = Vector(origin)
+
+    def put(obj, center, scale):
+        obj.location, obj.scale = origin + size * Vector(center), size * Vector(scale)
+
+    panel = [(0, 0, 0), (1, 0, 0), (1, 0, 1), (0, 0, 1)], [(0, 1, 2, 3)]
+    put(add_mesh("Floor", *square(1), ward("Floor", grey(0.3), grey(0.3), 0.15, "ward-gmd")), (0, 0, 0), (2.5, 2.5, 1))
+    put(add_mesh("Wall", *panel, ward("Wall", grey(0.5), BLACK, 0.3, "ward-gmd")), (-2.5, 2.5, 0), (5, 1, 2))
+    put(add_mesh("Panel", *panel, emitter("Panel", 3.0)), (-1.75, 1, 0), (1.5, 1, 1))
+    put(add_mesh("Cube", *box_mesh(), emitter("Cube", 2.0)), (1.25, -0.5, 0.25), (0.25, 0.25, 0.25))
+    stone = add_mesh("Box", *box_mesh(), ward("Stone", (0.5, 0.25, 0.1), grey(0.2), 0.3, "ward-gmd"))
+    put(stone, (0, 0, 0.5), (0.5, 0.5, 0.5))
+    copy = bpy.data.objects.new("Small box", stone.data)
+    bpy.context.collection.objects.link(copy)
+    put(copy, (-0.75, -1, 0.25), (0.25, 0.25, 0.25))
+    add_area(origin + size * Vector((1, 1, 2.5)), origin + size * Vector((1, 1, 0)), size, 10 * size**2)
+    camera = add_camera(origin + size * Vector((0.5, -5.5, 3)), origin + size * Vector((0, 0, 0.5)), 45)
+    camera.data.clip_start, camera.data.clip_end = size, 100 * size
+    empty_world().nodes["Background"].inputs["Strength"].default_value = 0.1
+
+
+SCENES = {
+    "teapot": teapot,
+    "veach": veach,
+    "veach-glossiness": veach_glossiness,
+    "furnace": furnace,
+    "stiff-mirror": stiff_mirror,
+    "stiff-grazing": stiff_grazing,
+    "stiff-lights": stiff_lights,
+    "stiff-alphas": stiff_alphas,
+    "stiff-mesh": stiff_mesh,
+    "stiff-touching": stiff_touching,
+    "stiff-large": stiff_large,
+    "stiff-small": stiff_small,
+}
+BLACK = (0.0, 0.0, 0.0)
 
 # Veach's plates from the back to the front: (height, depth) of the upper and of the lower edge
 PLATES = (
@@ -107,12 +227,7 @@ def veach_scene(alphas):
     add_mesh("Floor", [(-10, -10, floor), (10, -10, floor), (10, 10, floor), (-10, 10, floor)], [(0, 1, 2, 3)], room)
     add_mesh("Wall", [(-10, 2, floor), (10, 2, floor), (10, 2, 15), (-10, 2, 15)], [(0, 1, 2, 3)], room)
     for x, radius in LIGHTS:
-        data = bpy.data.lights.new(f"Light {radius:.2f}", "POINT")
-        data.energy, data.shadow_soft_size = LIGHT_POWER, radius
-        light = bpy.data.objects.new(data.name, data)
-        light.location = x, 0, 0
-        light.visible_camera = True  # new lights are not
-        bpy.context.collection.objects.link(light)
+        add_point((x, 0, 0), LIGHT_POWER, radius).name = f"Light {radius:.2f}"
     add_camera((0, -15, 2), (0, 0, -2.5), 42)
     empty_world().nodes["Background"].inputs["Strength"].default_value = 0.0
 
@@ -147,8 +262,40 @@ def add_mesh(name, vertices, faces, material, smooth=False):
     return obj
 
 
+def stiff():
+    """The settings that the scenes of this kind share: samples that are independent, as their tests suppose."""
+    set_up(512, 384)
+    bpy.context.scene.wardmis.sampler = "independent"
+
+
+def grey(value):
+    return (value, value, value)
+
+
 def square(half):
     return [(-half, -half, 0), (half, -half, 0), (half, half, 0), (-half, half, 0)], [(0, 1, 2, 3)]
+
+
+def box_mesh():
+    """A cube of half size 1, faces outwards."""
+    vertices = [(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]
+    return vertices, [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+
+
+def broken_mesh():
+    """Five wings at one upright edge; each in two triangles that do not share their vertices, and triangles without area."""
+    vertices, faces = [], []
+    for angle in np.arange(5) * 2 * math.pi / 5:
+        x, y = math.cos(angle), math.sin(angle)
+        first = len(vertices)
+        # the second triangle has its own copies of two corners, and the corners of those without area lie on one line
+        vertices += [(0, 0, 0), (x, y, 0), (x, y, 1), (0, 0, 0), (x, y, 1), (0, 0, 1), (x / 2, y / 2, 0.5), (x, y, 1)]
+        faces += [(0, 1, 2), (3, 4, 5), (0, 6, 2), (2, 4, 7), (3, 5, 0)]
+        faces[-5:] = [tuple(first + corner for corner in face) for face in faces[-5:]]
+    # an edge that wings share: the same two vertices in all of them
+    for face in range(0, len(faces), 5):
+        faces[face + 1] = (faces[1][0], faces[face + 1][1], faces[1][2])
+    return vertices, faces
 
 
 def sphere_mesh(segments, rings):
@@ -177,17 +324,56 @@ def ward(name, diffuse, specular, alpha, variant):
     return material
 
 
+def emitter(name, radiance):
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    material.node_tree.nodes.clear()
+    node = material.node_tree.nodes.new("ShaderNodeEmission")
+    node.inputs["Strength"].default_value = radiance
+    connect(material, node)
+    return material
+
+
 def connect(material, node):
     output = material.node_tree.nodes.new("ShaderNodeOutputMaterial")
     output.location.x = 250
     material.node_tree.links.new(node.outputs[0], output.inputs["Surface"])
 
 
+def add_light(data, location, watts):
+    data.energy = watts
+    light = bpy.data.objects.new(data.name, data)
+    light.location = location
+    light.visible_camera = True  # new lights are not
+    bpy.context.collection.objects.link(light)
+    return light
+
+
+def add_point(location, watts, radius):
+    data = bpy.data.lights.new("Point", "POINT")
+    data.shadow_soft_size = radius
+    return add_light(data, location, watts)
+
+
+def add_area(location, target, size, watts):
+    """A square light that looks at `target`."""
+    data = bpy.data.lights.new("Area", "AREA")
+    data.size = size
+    light = add_light(data, location, watts)
+    light.rotation_euler = look_at(location, target)
+    return light
+
+
+def look_at(location, target):
+    # of unit length: Blender takes the direction of a short vector for none
+    return (Vector(target) - Vector(location)).normalized().to_track_quat("-Z", "Y").to_euler()
+
+
 def add_camera(location, target, degrees):
     """A camera with this horizontal angle that looks at `target`."""
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     camera.location = location
-    camera.rotation_euler = (Vector(target) - Vector(location)).to_track_quat("-Z", "Y").to_euler()
+    camera.rotation_euler = look_at(location, target)
     camera.data.angle = math.radians(degrees)
     bpy.context.collection.objects.link(camera)
     bpy.context.scene.camera = camera

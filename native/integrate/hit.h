@@ -193,8 +193,9 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       shadow.direction = l.direction;
       shadow.kind = kCastsShadow;
       if (l.distance < 1e30f) {
-        // up to just before the emitter: from the moved origin to the same point
-        const Vec3f to = x.position + l.direction * l.distance - shadow.origin;
+        // up to just before the emitter: from the moved origin to the same point, by way of differences, since the
+        // point itself would be rounded to a place beside or behind the emitter far from the origin
+        const Vec3f to = l.direction * l.distance - (shadow.origin - x.position);
         const float d = length(to);
         shadow.direction = to / d;
         shadow.tMax = d * (1 - 1e-4f);

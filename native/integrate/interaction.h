@@ -2,8 +2,6 @@
 // Where a ray met a surface: position, shading frame, the surface's inputs resolved.
 #pragma once
 
-#include <bit>
-
 #include "bsdf/surface.h"
 #include "scene/accel.h"
 #include "scene/needs.h"
@@ -21,17 +19,12 @@ struct Interaction {
   int material = 0;
   uint32_t placement = 0;
 
-  // Start of a ray leaving towards the side of the geometric normal on which `direction` lies, beyond the rounding of
-  // the position (Waechter and Binder 2019, "A fast and robust method for avoiding self-intersection").
+  float clearance = 0;  // bound on the rounding of `position` and of an intersection there, along the normal
+
+  // Start of a ray leaving towards the side of the geometric normal on which `direction` lies, so that it does not
+  // meet the surface that it leaves.
   Vec3f leave(Vec3f direction) const {
-    const Vec3f n = dot(geometric, direction) < 0 ? -geometric : geometric;
-    const auto offset = [](float p, float d) {
-      constexpr float kOrigin = 1.0f / 32, kFloat = 1.0f / 65536, kInt = 256;
-      if (std::abs(p) < kOrigin) return p + kFloat * d;
-      const int steps = static_cast<int>(kInt * d);
-      return std::bit_cast<float>(std::bit_cast<int32_t>(p) + (p < 0 ? -steps : steps));
-    };
-    return {offset(position.x, n.x), offset(position.y, n.y), offset(position.z, n.z)};
+    return position + geometric * (dot(geometric, direction) < 0 ? -clearance : clearance);
   }
 };
 
@@ -63,6 +56,25 @@ inline Vec3f tangent(const Placement& p, const Shape& s, const uint32_t* i, Vec3
   return cross(axis, radial);
 }
 
+// How far rounding may take a point of the triangle, as interpolated here and as a ray finds it, from its plane, whose
+// unit normal is n: a few roundings of the coordinates that the normal sees. Neither a constant, which is beyond the
+// far side of a scene of 1e-6 and nothing at 1e6, nor relative to the point, which may lie near the origin on a
+// triangle that reaches far. Zero where nothing rounds, as on a floor at z = 0.
+inline float clearance(const Placement& p, const Shape& s, const uint32_t* i, Vec3f n) {
+  constexpr float kRoundings = 0x1p-19f;
+  const auto reach = [](Vec3f a, Vec3f b, Vec3f c) {
+    const auto most = [](float x, float y, float z) { return std::max({std::abs(x), std::abs(y), std::abs(z)}); };
+    return Vec3f{most(a.x, b.x, c.x), most(a.y, b.y, c.y), most(a.z, b.z, c.z)};
+  };
+  const auto absolute = [](Vec3f v) { return Vec3f{std::abs(v.x), std::abs(v.y), std::abs(v.z)}; };
+  Vec3f r = reach(s.positions[i[0]], s.positions[i[1]], s.positions[i[2]]);
+  if (!p.flat) {
+    const Affine& m = p.toWorld;
+    r = absolute(m.x) * r.x + absolute(m.y) * r.y + absolute(m.z) * r.z + absolute(m.t);
+  }
+  return kRoundings * dot(absolute(n), r);
+}
+
 }  // namespace detail
 
 // ray: the one that hit. N: needs mask of the kernel.
@@ -77,8 +89,9 @@ Interaction interact(const Scene& scene, const Geometry& geometry, const Ray& ra
   x.material = shape.material;
   x.placement = hit.placement;
   x.wo = -ray.direction;
-  const Vec3f p =
-      shape.positions[i[0]] * (1 - hit.u - hit.v) + shape.positions[i[1]] * hit.u + shape.positions[i[2]] * hit.v;
+  // from one corner: far from the origin, weights that do not quite sum to 1 would move the point
+  const Vec3f a = shape.positions[i[0]];
+  const Vec3f p = a + ((shape.positions[i[1]] - a) * hit.u + (shape.positions[i[2]] - a) * hit.v);
   x.position = placement.flat ? p : placement.toWorld.point(p);
   Vec3f ng = placement.flat ? hit.normal : placement.toWorld.normal(hit.normal);
   ng = normalize(ng);
@@ -91,11 +104,14 @@ Interaction interact(const Scene& scene, const Geometry& geometry, const Ray& ra
     if (dot(ns, ng) < 0) ns = -ns;
   }
   if (dot(ng, x.wo) < 0) ng = -ng, ns = -ns;
-  // A shading normal that looks away from the viewer is bent until it does not (else the silhouette turns black).
-  constexpr float kGrazing = 1e-3f;
-  const float facing = dot(ns, x.wo);
-  if (facing < kGrazing) ns = normalize(ns + x.wo * (kGrazing - facing));
   x.geometric = ng;
+  x.clearance = detail::clearance(placement, shape, i, ng);
+  if (!shape.part->normals.empty()) {
+    // A shading normal that looks away from the viewer is bent until it does not (else the silhouette turns black).
+    constexpr float kGrazing = 1e-3f;
+    const float facing = dot(ns, x.wo);
+    if (facing < kGrazing) ns = normalize(ns + x.wo * (kGrazing - facing));
+  }
 
   // UVs are in the file only where a texture is looked up (the reader leaves the others out).
   const Vec2f uv = shape.part->uvs.empty() ? Vec2f{} : detail::interpolate(shape.part->uvs, i, hit.u, hit.v);

@@ -12,7 +12,8 @@ namespace wardmis {
 // What a ray is for; it meets what is visible to that kind.
 struct Ray {
   Vec3f origin, direction;  // unit
-  float tMin = 0, tMax = 3.4e38f;
+  // Not from 0: a ray that starts exactly in a surface's plane does not meet that surface.
+  float tMin = 1e-15f, tMax = 3.4e38f;
   Visibility kind = kSeenByCamera;
 };
 
