@@ -138,6 +138,7 @@ json settingsJson(const RenderSettings& s, const Scene& scene) {
           {"samples_per_hit", s.samplesPerHit},
           {"pilot_spp", s.pilotSpp},
           {"min_fraction", s.minFraction},
+          {"cost", s.cost},
           {"max_depth", s.maxDepth},
           {"seed", s.seed},
           {"filter", name(scene.film.filter)},
@@ -394,6 +395,10 @@ Verb addRender(CLI::App& app) {
   app.add_option("--min-fraction", s.minFraction, "no technique gets less than this share")
       ->check(between(0.001, 0.5))
       ->capture_default_str();
+  app.add_option("--cost", s.cost, "of a lobe, cosine and light sample, for --allocation auto")
+      ->delimiter(',')
+      ->check(CLI::Range(1e-3f, 1e6f))
+      ->default_str("1,1,1");
   app.add_option("--max-depth", s.maxDepth, "surface hits of a path; 1 is direct light")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();

@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "cli/options.h"
 #include "cli/verbs.h"
 #include "film/write_file.h"
 #include "math/error.h"
@@ -168,7 +169,7 @@ Verb addStudy(CLI::App& app) {
   app.add_option("--strategies", o->names, "names, with commas (default: all)")->delimiter(',');
   app.add_option("--cost", o->cost, "of a sample of each technique: none (equal), measured, or numbers as in 1,2.5")
       ->capture_default_str();
-  app.add_option("--seed", o->seed, "another seed, other trials")->capture_default_str();
+  app.add_option("--seed", o->seed, "another seed, other trials")->check(wholeNumber())->capture_default_str();
   app.add_option("--threads", o->threads, "0: all; the numbers do not depend on it")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();

@@ -47,7 +47,7 @@ std::string big(double log) {
 
 std::string joined(const Densities& a, int n) {
   std::string s;
-  for (int i = 0; i < n; ++i) s += (i > 0 ? " " : "") + fmt::format("{:.4g}", a[at(i)]);
+  for (int i = 0; i < n; ++i) s += fmt::format("{}{:.4g}", i > 0 ? " " : "", a[at(i)]);
   return s;
 }
 
@@ -110,7 +110,7 @@ std::string studyTable(const Study& s) {
       rows[0].insert(rows[0].end(), {"mean", "bias z", "variance", "95 %", "/predicted", "us/trial", "var x s"});
     for (const StrategyRun& run : s.runs[k]) {
       std::string counts;
-      for (int i = 0; i < n; ++i) counts += (i > 0 ? " " : "") + std::to_string(run.counts[at(i)]);
+      for (int i = 0; i < n; ++i) counts += fmt::format("{}{}", i > 0 ? " " : "", run.counts[at(i)]);
       const bool given = run.strategy->knowledge == Knowledge::kGiven;
       std::vector<std::string> row{std::string(run.strategy->name), joined(run.exact.fractions, n),
                                    big(run.exact.logVariance), (given ? "" : "~ ") + counts};

@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""wardmis study: its JSON against the golden file, its other outputs, its mistakes."""
+
+import csv
+import json
+import math
+import os
+import re
+
+from blender import ROOT
+from command import CommandTest
+
+GOLDEN = json.loads((ROOT / "tests" / "golden" / "golden.json").read_text())
+
+
+def options(case):
+    """The command line of a golden case."""
+    names = {"alpha": "alpha", "alpha_x": "alpha-x", "alpha_y": "alpha-y", "phi_o_deg": "phi-o", "m": "m"}
+    names |= {"theta_o_deg": "theta-o", "rho_s": "rho-s", "rho_d": "rho-d", "R": "R", "model": "brdf", "mode": "mode"}
+    words = [word for key, name in names.items() if key in case for word in (f"--{name}", case[key])]
+    if case.get("joint"):
+        words += ["--integrand", "joint"]
+    if "techniques" in case:
+        words += ["--techniques", "lobe,cosine,uniform"]
+    return words
+
+
+class Study(CommandTest):
+    scenes = ()
+
+    def study(self, *arguments, **more):
+        return json.loads(self.run_command("study", "--json", *arguments, **more).stdout)
+
+    def test_json_has_the_golden_file_s_keys_and_values(self):
+        """A case of every kind; tests/native/study has all of them."""
+        seen = set()
+        for case in GOLDEN["estimator_cases"] + GOLDEN["three_technique_cases"]:
+            given = case["input"]
+            kind = (given["model"], given["mode"], given.get("joint"), "alpha_x" in given, "techniques" in given)
+            if kind in seen:
+                continue
+            seen.add(kind)
+            result = self.study("--trials", "0", *options(given))
+            with self.subTest(given):
+                self.assertEqual(set(result) - {"note"}, {"input", "expect"})
+                for key, value in given.items():
+                    self.assertEqual(result["input"][key], value)
+                for key in ("L_o", "L_o_integrand"):
+                    if key in case["expect"]:
+                        self.assertTrue(math.isclose(result["expect"][key], case["expect"][key], rel_tol=1e-6))
+                for key, value in case["expect"]["NVar"].items():
+                    if value is not None and not key.endswith("_relerr"):
+                        self.assertTrue(math.isclose(result["expect"]["NVar"][key], value, rel_tol=1e-6), key)
+        self.assertGreater(len(seen), 10)
+
+    def test_planar_is_called_no_radiance(self):
+        self.assertIn("no radiance", self.study("--trials", "0", "--mode", "planar")["note"])
+        self.assertIn("no radiance", self.run_command("study", "--trials", "0", "--mode", "planar").stdout)
+
+    def test_measured_agrees_with_exact_and_not_with_threads(self):
+        result = self.study("--threads", "1")
+        other = self.study("--threads", "2")
+        strategies = result["measured"]["runs"][0]["strategies"]
+        self.assertGreaterEqual(len(strategies), 20)
+        for name, values in strategies.items():
+            with self.subTest(name):
+                self.assertEqual(values["mean"], other["measured"]["runs"][0]["strategies"][name]["mean"])
+                self.assertLess(abs(values["bias_z"]), 4)
+                self.assertGreater(values["seconds_per_trial"], 0)
+                if not values["counts_follow_samples"]:
+                    off = abs(values["variance"] - values["predicted_variance"]) / values["variance_error"]
+                    self.assertLess(off, 5)
+        tie = strategies["variance"]["nvar"] / strategies["equal"]["nvar"]
+        self.assertAlmostEqual(tie, 1, 12)
+
+    def test_auto_beats_equal_counts_where_the_theory_does(self):
+        for extra in ((), ("--techniques", "lobe,cosine,uniform")):
+            run = self.study("--strategies", "equal,auto", "--trials", "4000", *extra)["measured"]["runs"][0]
+            self.assertLess(run["strategies"]["auto"]["variance"], 0.75 * run["strategies"]["equal"]["variance"])
+
+    def test_auto_is_equal_where_nothing_is_to_be_gained(self):
+        run = self.study("--alpha", "0.5", "--theta-o", "0", "--strategies", "equal,auto", "--trials", "4000")
+        strategies = run["measured"]["runs"][0]["strategies"]
+        self.assertLess(strategies["auto"]["variance"], 1.1 * strategies["equal"]["variance"])
+
+    def test_costs_are_used(self):
+        names = "equal,variance,standard-deviation,second-moment,best"
+        free = self.study("--trials", "2", "--strategies", names)["measured"]["runs"][0]["strategies"]
+        dear = self.study("--trials", "2", "--strategies", names, "--cost", "9,1")["measured"]["runs"][0]["strategies"]
+        self.assertEqual(free["equal"]["fractions"], dear["equal"]["fractions"])
+        for name, power in (("variance", 1), ("standard-deviation", 0.5), ("second-moment", 1)):
+            a, b = free[name]["fractions"], dear[name]["fractions"]
+            self.assertAlmostEqual((a[0] / a[1]) / (b[0] / b[1]) / 9**power, 1, 9)
+        self.study("--trials", "2", "--cost", "measured")
+
+    def test_range_csv_and_figures(self):
+        table = self.folder / "s.csv"
+        figure = self.folder / "a figure's name.svg"
+        names = ["equal", "second-moment"]
+        self.run_command(
+            "study", "--samples", "16..128", "--trials", "50", "--strategies", ",".join(names), "--csv", table, "--plot", figure
+        )  # fmt: skip
+        with table.open() as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([(r["samples"], r["strategy"]) for r in rows], [(str(n), s) for n in (16, 32, 64, 128) for s in names])
+        self.assertAlmostEqual(float(rows[0]["exact_integral"]), 0.25383768237261395, 9)
+        self.assertIn("second-moment", figure.read_text())
+        self.run_command("study", "--trials", "2", "--plot", self.folder / "s.png")
+        self.assertEqual((self.folder / "s.png").read_bytes()[:4], b"\x89PNG")
+
+    def test_figure_without_gnuplot(self):
+        done = self.refused(
+            4, "study", "--trials", "2", "--plot", self.folder / "s.svg", says=["gnuplot", "install"], env={**os.environ, "PATH": ""}
+        )  # fmt: skip
+        self.assertFalse((self.folder / "s.svg").exists(), done.stderr)
+
+    def test_the_paper_s_errors(self):
+        done = self.run_command("study", "--paper").stdout
+        for m, ratio in (("1", "2.513"), ("10", "3.561"), ("100", "5.34")):
+            self.assertRegex(done, rf"\(11\), \(12\).*m = {m} \| {re.escape(ratio)} \|")
+        self.assertRegex(done, r"\| split \| 60 \| 0.1 \| 1 \| 0.657 \| 0.4792 \|")
+
+    def test_mistakes_end_with_2(self):
+        for arguments, says in (
+            (("--theta-o", "90"), "89.9999"),
+            (("--alpha", "0"), "alpha"),
+            (("--alpha", "0.1", "--alpha-x", "0.2"), "--alpha"),
+            (("--brdf", "phong"), "lafortune-phong"),
+            (("--mode", "planar", "--alpha-x", "0.2"), "planar"),
+            (("--mode", "planar", "--brdf", "lafortune-phong"), "--theta-o 0"),
+            (("--rho-s", "0"), "nothing is left"),
+            (("--samples", "1"), "--samples"),
+            (("--samples", "16..8"), "--samples"),
+            (("--samples", "2", "--techniques", "lobe,cosine,uniform"), "at least one"),
+            (("--techniques", "lobe"), "two or three"),
+            (("--techniques", "lobe,lobe"), "twice"),
+            (("--strategies", "fair"), "second-moment"),
+            (("--strategies", "second-order", "--techniques", "lobe,cosine,uniform"), "two techniques"),
+            (("--cost", "1"), "2 numbers"),
+            (("--cost", "1,-1"), "above 0"),
+            (("--plot", "s.pdf"), ".svg"),
+            (("--plot", "s.svg", "--trials", "0"), "--trials"),
+            (("--rho-d", "nan"), "rho-d"),
+            (("--seed", "-1"), "--seed"),
+        ):
+            with self.subTest(arguments):
+                self.refused(2, "study", *arguments, says=[says])
