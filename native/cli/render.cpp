@@ -58,10 +58,15 @@ E pick(const std::string& value, const std::array<E, N>& all) {
     if (name(e) == value) return e;
   throw Error(ExitCode::kUsage, "unknown value " + value);
 }
-constexpr std::array kAllocations{
-    Allocation::kEqual,           Allocation::kVariance,  Allocation::kStandardDeviation, Allocation::kSecondMoment,
-    Allocation::kInverseVariance, Allocation::kEqualised, Allocation::kRepresentativity,  Allocation::kAlbedo,
-    Allocation::kAuto};
+constexpr std::array kAllocations{Allocation::kEqual,
+                                  Allocation::kVariance,
+                                  Allocation::kStandardDeviation,
+                                  Allocation::kSecondMoment,
+                                  Allocation::kInverseVariance,
+                                  Allocation::kEqualised,
+                                  Allocation::kRepresentativity,
+                                  Allocation::kAlbedo,
+                                  Allocation::kAuto};
 constexpr std::array kWeights{Weights::kBalance, Weights::kNonbalance, Weights::kPower, Weights::kCutoff,
                               Weights::kMaximum};
 constexpr std::array kIntegrands{Integrand::kSplit, Integrand::kJoint};

@@ -90,8 +90,8 @@ int runPaper(const Options& o) {
   const std::vector<Erratum> wrong = errata();
   const std::vector<Verdict> ranking = verdicts();
   if (!o.plot.empty()) plotVerdicts(ranking, o.plot);
-  fmt::print("Printed formulas\n\n{}\nN Var over that of equal counts, rho_s = 0.5, rho_d = 0.3\n\n{}", errataTable(wrong),
-             verdictTable(ranking));
+  fmt::print("Printed formulas\n\n{}\nN Var over that of equal counts, rho_s = 0.5, rho_d = 0.3\n\n{}",
+             errataTable(wrong), verdictTable(ranking));
   return 0;
 }
 
@@ -137,7 +137,9 @@ int run(Options& o) {
 
 Verb addStudy(CLI::App& app) {
   auto o = std::make_shared<Options>();
-  app.footer("The paper's sections 3 and 4: L_o = integral of f_r L_i cos under the sky L_i = R cos(theta), exactly and by trials.");
+  app.footer(
+      "The paper's sections 3 and 4: L_o = integral of f_r L_i cos under the sky L_i = R cos(theta), exactly and by "
+      "trials.");
   app.add_option("--brdf", o->brdf, "the reflectance")
       ->check(CLI::IsMember({"lafortune-phong", "ward", "ward-dur", "ward-gmd"}))
       ->capture_default_str();
@@ -175,10 +177,12 @@ Verb addStudy(CLI::App& app) {
       ->capture_default_str();
   app.add_flag("--json", o->json, "one object with the keys input, expect (as in tests/golden) and measured");
   app.add_option("--csv", o->csv, "write a line for each strategy and number of samples");
-  app.add_option("--plot", o->plot, "draw variance against samples and error against time, as .svg or .png (needs gnuplot)");
-  app.add_flag("--paper", o->paper,
-               "instead: how far the paper's printed formulas are off, and when its ranking of the allocations is true; with "
-               "--plot as a figure");
+  app.add_option("--plot", o->plot,
+                 "draw variance against samples and error against time, as .svg or .png (needs gnuplot)");
+  app.add_flag(
+      "--paper", o->paper,
+      "instead: how far the paper's printed formulas are off, and when its ranking of the allocations is true; with "
+      "--plot as a figure");
   return [o] { return run(*o); };
 }
 

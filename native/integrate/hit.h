@@ -65,7 +65,7 @@ enum Dimension : uint32_t {
 struct HitPlan {
   Fractions fractions{};  // of the techniques that this hit has
   TechniqueMask available = kAllTechniques;
-  int samples = 0;        // in all; at most the batch's capacity
+  int samples = 0;  // in all; at most the batch's capacity
   Integrand integrand = Integrand::kSplit;
   Weights weights = Weights::kBalance;
   uint32_t pixelKey = 0, vertex = 0;

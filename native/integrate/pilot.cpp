@@ -5,8 +5,8 @@
 
 namespace wardmis {
 
-std::vector<Fractions> Pilot::fractions(Allocation rule, Integrand integrand, TechniqueMask available,
-                                        float minimum, const Fractions& cost) const {
+std::vector<Fractions> Pilot::fractions(Allocation rule, Integrand integrand, TechniqueMask available, float minimum,
+                                        const Fractions& cost) const {
   constexpr int kRadius = 3;         // 7 x 7 pixels
   constexpr float kSameFace = 0.9f;  // cos of the largest turn of the normal that still is "the same surface"
   std::vector<Fractions> result(pixels.size());

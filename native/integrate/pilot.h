@@ -25,8 +25,8 @@ struct Pilot {
   }
 
   // Fractions per pixel of the techniques that the scene has (`available`).
-  std::vector<Fractions> fractions(Allocation rule, Integrand integrand, TechniqueMask available,
-                                   float minimum, const Fractions& cost) const;
+  std::vector<Fractions> fractions(Allocation rule, Integrand integrand, TechniqueMask available, float minimum,
+                                   const Fractions& cost) const;
 };
 
 }  // namespace wardmis

@@ -202,8 +202,8 @@ FilmBuffer renderInArena(const Scene& scene, const RenderSettings& settings, Sta
                     film.y0};
   // Before the pilot, and for `equal`: the same count for every technique of an integral.
   const TechniqueMask available = stats.techniques;
-  input.fractions = joint ? allocate(Allocation::kEqual, {}, available, 0)
-                          : allocateSplit(Allocation::kEqual, {}, {}, available, 0);
+  input.fractions =
+      joint ? allocate(Allocation::kEqual, {}, available, 0) : allocateSplit(Allocation::kEqual, {}, {}, available, 0);
 
   Run run(settings, observer, buffer, input, tileKernel(stats.kernel));
   if (observer.started) observer.started(stats);
@@ -213,7 +213,8 @@ FilmBuffer renderInArena(const Scene& scene, const RenderSettings& settings, Sta
     Pilot pilot(buffer.width, buffer.height, settings.allocation);
     run.until(pilotSpp, &pilot);
     if (!run.stopped()) {
-      perPixel = pilot.fractions(settings.allocation, settings.integrand, available, settings.minFraction, settings.cost);
+      perPixel =
+          pilot.fractions(settings.allocation, settings.integrand, available, settings.minFraction, settings.cost);
       input.perPixel = &perPixel;
     }
     stats.pilotSeconds = run.seconds();

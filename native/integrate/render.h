@@ -31,7 +31,7 @@ struct RenderSettings {
   uint32_t pilotSpp = 4;
   float minFraction = 0.1f;
   Fractions cost{1, 1, 1};  // of a lobe, cosine and light sample, for `auto`
-  int maxDepth = 8;  // surface hits of a path
+  int maxDepth = 8;         // surface hits of a path
   uint64_t seed = 0;
   int threads = 0;  // 0: all
   bool generalKernel = false;

@@ -60,8 +60,8 @@ constexpr uint32_t sobol1Reversed(uint32_t i) {
   return i;
 }
 
-// A stream of 53-bit numbers for studies without pixels (Steele, Lea and Flood 2014, "SplitMix"): as many streams as there
-// are keys, so that trials do not depend on threads.
+// A stream of 53-bit numbers for studies without pixels (Steele, Lea and Flood 2014, "SplitMix"): as many streams as
+// there are keys, so that trials do not depend on threads.
 class Stream {
  public:
   Stream(uint64_t seed, uint64_t key) : state_(scramble(seed) ^ scramble(key * 0x9e3779b97f4a7c15ull + 1)) {}

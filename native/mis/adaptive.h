@@ -10,8 +10,8 @@ namespace wardmis {
 // samples, n_l being the number that technique l has drawn.
 Point pooledPoint(double f, const Densities& p, const Densities& n, int techniques);
 
-// The fractions that minimise predicted variance x cost over pilot points, among `candidates`: equal counts, the first of
-// them, unless the gain over these exceeds `sigmas` times its own standard error, estimated from the points.
+// The fractions that minimise predicted variance x cost over pilot points, among `candidates`: equal counts, the first
+// of them, unless the gain over these exceeds `sigmas` times its own standard error, estimated from the points.
 Densities autoFractions(const Points& pilot, const Densities* cost, double sigmas = 2);
 
 // Fractions proportional to powers of `step` up to the one given, equal ones first.

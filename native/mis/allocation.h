@@ -66,9 +66,9 @@ inline std::array<int, kTechniques> systematicCounts(const Fractions& a, int n, 
 
 // The weights of one hit, ready for use.
 struct Mixture {
-  Fractions n{};         // expected counts n_i
-  Fractions a{};         // coefficients a_i; 0 for a technique that takes no samples
-  Fractions aOverN{};    // a_i/n_i
+  Fractions n{};       // expected counts n_i
+  Fractions a{};       // coefficients a_i; 0 for a technique that takes no samples
+  Fractions aOverN{};  // a_i/n_i
   Weights rule = Weights::kBalance;
 
   Mixture() = default;

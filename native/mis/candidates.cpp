@@ -28,7 +28,8 @@ Fractions chooseCandidate(const CandidateSums& sums, float squares, TechniqueMas
   const auto objective = [&](int c) {
     const Fractions a = list.at(c);
     // the pilot's noise may leave less than nothing
-    return std::max(sums.value[c] - squares, 1e-3f * sums.value[c]) * (a[0] * cost[0] + a[1] * cost[1] + a[2] * cost[2]);
+    return std::max(sums.value[c] - squares, 1e-3f * sums.value[c]) *
+           (a[0] * cost[0] + a[1] * cost[1] + a[2] * cost[2]);
   };
   int best = 0;
   const float equal = objective(0);

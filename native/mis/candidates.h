@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `auto` in a render: of a fixed set of fractions, the one whose predicted variance x cost over the pilot's samples is the
-// least. The candidates' sums are made while the pilot runs, so that its samples need not be kept.
+// `auto` in a render: of a fixed set of fractions, the one whose predicted variance x cost over the pilot's samples is
+// the least. The candidates' sums are made while the pilot runs, so that its samples need not be kept.
 #pragma once
 
 #include "mis/moments.h"
@@ -59,8 +59,8 @@ class CandidateHit {
   float value_[kCandidates]{};
 };
 
-// squares: sum over the hits' integrands of (integral f)^2, which is no variance. Equal counts where no candidate's gain
-// is above twice its standard error.
+// squares: sum over the hits' integrands of (integral f)^2, which is no variance. Equal counts where no candidate's
+// gain is above twice its standard error.
 Fractions chooseCandidate(const CandidateSums& sums, float squares, TechniqueMask available, const Fractions& cost);
 
 }  // namespace wardmis

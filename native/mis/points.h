@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Weighted points that stand for an integral over the domain: sum_m w_m h(x_m) for the integral of h, with the integrand
-// f and every technique's density p_k known at each. The nodes of a quadrature and the samples of a pilot are both
-// such points, so that what an allocation needs to know of an integrand is written once for both.
+// Weighted points that stand for an integral over the domain: sum_m w_m h(x_m) for the integral of h, with the
+// integrand f and every technique's density p_k known at each. The nodes of a quadrature and the samples of a pilot are
+// both such points, so that what an allocation needs to know of an integrand is written once for both.
 #pragma once
 
 #include <array>

@@ -57,8 +57,10 @@ class LogSum {
  public:
   void add(double weight, double x) {
     if (!(weight > 0) || x == -kInfinity) return;
-    if (x > scale_) sum_ = sum_ * std::exp(scale_ - x) + weight, scale_ = x;
-    else sum_ += weight * std::exp(x - scale_);
+    if (x > scale_)
+      sum_ = sum_ * std::exp(scale_ - x) + weight, scale_ = x;
+    else
+      sum_ += weight * std::exp(x - scale_);
   }
   double log() const { return sum_ > 0 ? scale_ + std::log(sum_) : -kInfinity; }
 
@@ -128,8 +130,8 @@ Densities minimiseOverSimplex(int n, const F& objective) {
             if (v < low) low = v, at0 = x;
           }
           const double step = 2 * kSpan / kSteps;
-          const auto [x, v] = boost::math::tools::brent_find_minima(f, std::max(-kSpan, at0 - step),
-                                                                    std::min(kSpan, at0 + step), 40);
+          const auto [x, v] =
+              boost::math::tools::brent_find_minima(f, std::max(-kSpan, at0 - step), std::min(kSpan, at0 + step), 40);
           if (std::min(v, low) < value) {
             a = exchange(a, i, k, v < low ? x : at0);
             value = std::min(v, low);
@@ -154,10 +156,9 @@ double oneSampleVariance(const Densities& a, const Points& points, double mu) {
   double outside = 0;
   for (int i = 0; i < n; ++i) outside += a[at(i)] * points.outside[at(i)];
   return points.integrate([&](const Point& x) {
-           const double q = mixture(a, x.p, n);
-           return q > 0 ? square(x.f / q - mu) * q : 0;
-         }) +
-         outside * mu * mu;
+    const double q = mixture(a, x.p, n);
+    return q > 0 ? square(x.f / q - mu) * q : 0;
+  }) + outside * mu * mu;
 }
 
 // N Var with balance weights: sum_i a_i Var_{p_i}[f/q].
@@ -223,13 +224,14 @@ Densities secondOrder(const Points& points) {
 }  // namespace
 
 std::string_view name(Allocation a) {
-  constexpr std::string_view names[] = {"equal",     "variance", "standard-deviation", "second-moment",
-                                        "inverse-variance", "equalised", "linear", "second-order",
-                                        "representativity", "best", "albedo", "auto"};
+  constexpr std::string_view names[] = {
+      "equal",  "variance",     "standard-deviation", "second-moment", "inverse-variance", "equalised",
+      "linear", "second-order", "representativity",   "best",          "albedo",           "auto"};
   return names[static_cast<int>(a)];
 }
 std::string_view name(Weights w) {
-  constexpr std::string_view names[] = {"balance", "nonbalance", "power", "cutoff", "maximum", "variance-aware", "optimal"};
+  constexpr std::string_view names[] = {"balance", "nonbalance",     "power",  "cutoff",
+                                        "maximum", "variance-aware", "optimal"};
   return names[static_cast<int>(w)];
 }
 
@@ -258,7 +260,8 @@ IntegrandMoments momentsOf(const Points& points) {
   for (int i = 0; i < n; ++i) {
     m.logSecond[at(i)] = second[at(i)].log();
     m.variance[at(i)] = points.outside[at(i)] * square(m.mean[at(i)]);
-    m.variancePrim[at(i)] = m.logSecond[at(i)] > std::log(kHuge) ? kInfinity : points.outside[at(i)] * square(m.integral);
+    m.variancePrim[at(i)] =
+        m.logSecond[at(i)] > std::log(kHuge) ? kInfinity : points.outside[at(i)] * square(m.integral);
   }
   for (const Point& x : points.list) {
     const double sum = mixture(Densities{1, 1, 1, 1, 1, 1, 1, 1}, x.p, n);
@@ -320,8 +323,8 @@ Densities fractions(Allocation rule, const Points& points, const IntegrandMoment
       });
     case A::kBest:
     case A::kAuto:
-      return minimiseOverSimplex(
-          n, [&](const Densities& f) { return balanceVariance(f, points) * meanCost(f, cost, n); });
+      return minimiseOverSimplex(n,
+                                 [&](const Densities& f) { return balanceVariance(f, points) * meanCost(f, cost, n); });
     case A::kSecondOrder:
       if (n != 2) return equalFractions(n);
       a = secondOrder(points);
@@ -426,12 +429,11 @@ double logVariance(Weights rule, const Densities& a, const Points& points, const
     for (int i = 0; i < n; ++i) outside[at(i)] = rule == W::kOptimal ? -tau[at(i)] : 0;
     for (int i = 0; i < n; ++i) {
       if (!(a[at(i)] > 0)) continue;
-      const double inside =
-          points.integrate([&](const Point& x) { return x.p[at(i)] > 0 ? y(i, x) * x.p[at(i)] : 0; });
+      const double inside = points.integrate([&](const Point& x) { return x.p[at(i)] > 0 ? y(i, x) * x.p[at(i)] : 0; });
       mean[at(i)] = inside + points.outside[at(i)] * outside[at(i)];
-      variance[at(i)] =
-          points.integrate([&](const Point& x) { return x.p[at(i)] > 0 ? square(y(i, x) - mean[at(i)]) * x.p[at(i)] : 0; }) +
-          points.outside[at(i)] * square(outside[at(i)] - mean[at(i)]);
+      variance[at(i)] = points.integrate([&](const Point& x) {
+        return x.p[at(i)] > 0 ? square(y(i, x) - mean[at(i)]) * x.p[at(i)] : 0;
+      }) + points.outside[at(i)] * square(outside[at(i)] - mean[at(i)]);
     }
   }
   LogSum sum;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Every way of sharing N samples between techniques, as data: the fractions a_i = N_i/N and the weights w_i of the
-// estimator F = sum_i 1/N_i sum_j w_i(X_ij) f(X_ij)/p_i(X_ij), from points that stand for the integrand. docs/theory.md has
-// each one's source, formula and conditions. For any number of techniques.
+// estimator F = sum_i 1/N_i sum_j w_i(X_ij) f(X_ij)/p_i(X_ij), from points that stand for the integrand. docs/theory.md
+// has each one's source, formula and conditions. For any number of techniques.
 #pragma once
 
 #include <span>
@@ -33,12 +33,12 @@ const Strategy* findStrategy(std::string_view name);
 // What is known of an integrand, from points.
 struct IntegrandMoments {
   int techniques = 0;
-  double integral = 0;      // mu
-  Densities mean{};         // mu_i,eq = integral g p_i, g = f/sum_k p_k
-  Densities square{};       // integral g^2 p_i
-  Densities variance{};     // sigma^2_i,eq = square - mean^2
-  Densities logSecond{};    // ln m^2_i, m^2_i = integral f^2/p_i
-  Densities variancePrim{}; // m^2_i - mu^2 without its cancellation; infinite beyond double's range
+  double integral = 0;       // mu
+  Densities mean{};          // mu_i,eq = integral g p_i, g = f/sum_k p_k
+  Densities square{};        // integral g^2 p_i
+  Densities variance{};      // sigma^2_i,eq = square - mean^2
+  Densities logSecond{};     // ln m^2_i, m^2_i = integral f^2/p_i
+  Densities variancePrim{};  // m^2_i - mu^2 without its cancellation; infinite beyond double's range
 
   double second(int i) const;  // m^2_i, infinity beyond double's range
 };

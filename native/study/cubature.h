@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Adaptive quadrature of several integrals at once, over the charts of a problem, that keeps its nodes: afterwards any
-// other integral of the same functions is a sum over them. The rule is Boost's Gauss-Kronrod 7-15, in two dimensions its
-// product; a cell is halved along the direction that converges worse.
+// other integral of the same functions is a sum over them. The rule is Boost's Gauss-Kronrod 7-15, in two dimensions
+// its product; a cell is halved along the direction that converges worse.
 #pragma once
 
 #include "study/problem.h"

@@ -43,7 +43,8 @@ Integrands secondMoments(int n) {
           }};
 }
 
-// Squared deviations from the means: what the variances are made of, which vanish where f and q are nearly proportional.
+// Squared deviations from the means: what the variances are made of, which vanish where f and q are nearly
+// proportional.
 Integrands deviations(const Points& points, const IntegrandMoments& m) {
   const int n = points.techniques;
   std::vector<Densities> mixtures;
@@ -231,7 +232,8 @@ json expectJson(const StudyInput& input, const Exact& e, int samples) {
     const auto whole = [&](const char* key, W weights, const Densities& fractions) {
       const auto c = wholeCounts(fractions, n, samples);
       const Densities actual{double(c[0]) / samples, double(c[1]) / samples};
-      counts[key] = {{"N1", c[0]}, {"N2", c[1]}, {"Var", std::exp(logVariance(weights, actual, e.points, m)) / samples}};
+      counts[key] = {
+          {"N1", c[0]}, {"N2", c[1]}, {"Var", std::exp(logVariance(weights, actual, e.points, m)) / samples}};
     };
     whole("balance equal", W::kBalance, equal);
     whole("nonbalance sigma2", W::kNonbalance, sigma2);

@@ -36,17 +36,15 @@ void drawWithGnuplot(const std::string& path, int width, int height, const std::
   // gnuplot's own output is a temporary file: what it draws of a failed script must not stay
   std::string temporary = (std::filesystem::temp_directory_path() / "wardmis-plot-XXXXXX").string();
   const int fd = mkstemp(temporary.data());
-  if (fd < 0)
-    throw Error(ExitCode::kFile, temporary + ": cannot be created", "check TMPDIR and the free space");
+  if (fd < 0) throw Error(ExitCode::kFile, temporary + ": cannot be created", "check TMPDIR and the free space");
   close(fd);
   const std::string messages = temporary + ".log";
   const struct Cleaner {
     const std::string &a, &b;
     ~Cleaner() { std::remove(a.c_str()), std::remove(b.c_str()); }
   } cleaner{temporary, messages};
-  const std::string terminal = path.ends_with(".svg")
-                                   ? fmt::format("svg size {},{} background 'white'", width, height)
-                                   : fmt::format("pngcairo size {},{}", width, height);
+  const std::string terminal = path.ends_with(".svg") ? fmt::format("svg size {},{} background 'white'", width, height)
+                                                      : fmt::format("pngcairo size {},{}", width, height);
   std::signal(SIGPIPE, SIG_IGN);  // a gnuplot that ends early is told by its exit code
   FILE* pipe = popen(fmt::format("gnuplot - >'{}' 2>&1", messages).c_str(), "w");
   if (pipe == nullptr) throw Error(ExitCode::kFile, "no process for gnuplot", "close other programs");

@@ -6,8 +6,8 @@
 
 namespace wardmis {
 
-// Draws `script` (which must not set terminal or output) to an .svg or .png file of the given size in pixels, complete or
-// not at all. Throws Error: usage for another ending, file where gnuplot is not installed or fails.
+// Draws `script` (which must not set terminal or output) to an .svg or .png file of the given size in pixels, complete
+// or not at all. Throws Error: usage for another ending, file where gnuplot is not installed or fails.
 void drawWithGnuplot(const std::string& path, int width, int height, const std::string& script);
 
 // Ends with usage where `path` has another ending than .svg and .png: to be called before the work is done.

@@ -18,11 +18,11 @@ enum class StudyTechnique : uint8_t { kLobe, kCosine, kUniform };  // the BRDF's
 struct StudyInput {
   StudyBrdf brdf = StudyBrdf::kWard;
   StudyMode mode = StudyMode::kFull;
-  double alphaX = 0.1, alphaY = 0.1;       // Ward
-  double m = 10;                           // Lafortune and Phong's exponent
-  double thetaO = 60, phiO = 0;            // degrees
+  double alphaX = 0.1, alphaY = 0.1;  // Ward
+  double m = 10;                      // Lafortune and Phong's exponent
+  double thetaO = 60, phiO = 0;       // degrees
   double rhoD = 0, rhoS = 1, R = 1;
-  bool joint = false;                      // the diffuse part inside the integrand; else apart, known exactly
+  bool joint = false;  // the diffuse part inside the integrand; else apart, known exactly
   std::vector<StudyTechnique> techniques{StudyTechnique::kLobe, StudyTechnique::kCosine};
 
   bool ward() const { return brdf != StudyBrdf::kLafortunePhong; }

@@ -36,8 +36,7 @@ double meanWithDenominator(const Exact& e, const F& printed) {
 double meanWithMixedIndices(const Exact& e) {
   double sum = 0;
   for (const Point& x : e.points.list)
-    for (const Point& y : e.points.list)
-      sum += x.w * x.p[0] * y.w * y.p[1] * (x.f + y.f) / (x.p[0] + y.p[1]);
+    for (const Point& y : e.points.list) sum += x.w * x.p[0] * y.w * y.p[1] * (x.f + y.f) / (x.p[0] + y.p[1]);
   return sum / e.moments.integral;
 }
 
@@ -51,10 +50,9 @@ std::vector<Erratum> errata() {
     // on [0, 1] the true densities are (m+1) x^m and 2x
     list.push_back({"(11), (12)", "densities as printed, (m+1)/(2 pi) x^m and 4x/pi: mean of F_eq", of,
                     meanWithDenominator(e, [](const Point& x) { return x.p[0] / (2 * kPid) + x.p[1] * 2 / kPid; })});
-    list.push_back({"(24), (26)", "p_2 as printed there, 4x^2/pi: mean of F_eq", of,
-                    meanWithDenominator(e, [](const Point& x) {
-                      return x.p[0] / (2 * kPid) + x.p[1] * x.p[1] / kPid;
-                    })});
+    list.push_back(
+        {"(24), (26)", "p_2 as printed there, 4x^2/pi: mean of F_eq", of,
+         meanWithDenominator(e, [](const Point& x) { return x.p[0] / (2 * kPid) + x.p[1] * x.p[1] / kPid; })});
     list.push_back({"(13)", "p_1(X_1j) + p_2(X_2j) in the denominator: mean of F_eq", of, meanWithMixedIndices(e)});
   }
   list.push_back({"(14)", "R rho_s (m+2)/pi as printed, on [0, 1]", "any m", 1 / kPid});
@@ -84,7 +82,8 @@ std::vector<Verdict> verdicts() {
     in.alphaX = in.alphaY = v.alpha, in.thetaO = v.thetaO, in.joint = v.joint, in.rhoS = 0.5, in.rhoD = 0.3;
     const Exact e = solve(*makeProblem(in));
     const double equal = predict(*findStrategy("equal"), e).logVariance;
-    for (const char* name : kVerdictStrategies) v.logRatio.push_back(predict(*findStrategy(name), e).logVariance - equal);
+    for (const char* name : kVerdictStrategies)
+      v.logRatio.push_back(predict(*findStrategy(name), e).logVariance - equal);
   });
   return list;
 }
@@ -111,7 +110,8 @@ std::string verdictTable(const std::vector<Verdict>& list) {
 void plotVerdicts(const std::vector<Verdict>& list, const std::string& path) {
   constexpr const char* kColours[] = {"#d62728", "#ff9896", "#1f77b4", "#9467bd", "#2ca02c", "#000000"};
   std::string script =
-      "set multiplot title 'Variance over that of equal counts (Def. 7): below 1 is better' noenhanced\nset logscale xy\n"
+      "set multiplot title 'Variance over that of equal counts (Def. 7): below 1 is better' noenhanced\nset logscale "
+      "xy\n"
       "set grid lc rgb '#dddddd'\nset border lc rgb '#666666'\nset tics font ',9'\nset xlabel 'alpha'\n"
       "set format y '10^{%T}'\nset xrange [0.01:1]\nset yrange [1e-5:1e4]\n";
   int panel = 0;
@@ -130,8 +130,8 @@ void plotVerdicts(const std::vector<Verdict>& list, const std::string& path) {
       script += panel % 2 == 1 ? "set key outside right noenhanced font ',9'\n" : "set key off\n";
       script += "plot 1 with lines lc rgb '#999999' dt 2 title 'equal'";
       for (size_t s = 0; s < std::size(kVerdictStrategies); ++s)
-        script += fmt::format(", $p{}s{} with linespoints lc rgb '{}' pt {} ps 0.6 lw 1.6 title '{}'", panel, s, kColours[s],
-                              s + 4, kVerdictStrategies[s]);
+        script += fmt::format(", $p{}s{} with linespoints lc rgb '{}' pt {} ps 0.6 lw 1.6 title '{}'", panel, s,
+                              kColours[s], s + 4, kVerdictStrategies[s]);
       script += "\n";
       panel += 1;
     }

@@ -23,8 +23,8 @@ struct Verdict {
   double alpha = 0, thetaO = 0;
   std::vector<double> logRatio;  // by kVerdictStrategies
 };
-inline constexpr const char* kVerdictStrategies[] = {"variance",           "variance-balance", "second-moment",
-                                                     "second-moment-nonbalance", "standard-deviation", "best"};
+inline constexpr const char* kVerdictStrategies[] = {
+    "variance", "variance-balance", "second-moment", "second-moment-nonbalance", "standard-deviation", "best"};
 // Ward's model, rho_s = 0.5, rho_d = 0.3, for alpha from 0.01 to 1 and theta_o of 0, 30, 60 and 80 degrees.
 std::vector<Verdict> verdicts();
 

@@ -103,8 +103,8 @@ double logIntegralOfPeaks(const Peak& peak, const Rest& rest) {
   std::vector<double> exact;
   for (int i : maxima) {
     const double step = 2 * kPid / kGrid;
-    const auto [x, y] = boost::math::tools::brent_find_minima([&](double v) { return -peak(v); }, (i - 1) * step,
-                                                              (i + 1) * step, 50);
+    const auto [x, y] =
+        boost::math::tools::brent_find_minima([&](double v) { return -peak(v); }, (i - 1) * step, (i + 1) * step, 50);
     exact.push_back(x);
     scale = std::max(scale, -y);
   }
@@ -117,8 +117,7 @@ double logIntegralOfPeaks(const Peak& peak, const Rest& rest) {
       int lowest = 0;
       for (int s = 0; s <= steps; ++s)
         if (at(maxima[k] + side * s) < at(maxima[k] + side * lowest)) lowest = s;
-      const double length =
-          std::abs(2 * kPid * (maxima[k] + side * lowest) / kGrid - exact[k]);
+      const double length = std::abs(2 * kPid * (maxima[k] + side * lowest) / kGrid - exact[k]);
       sum += quadrature.integrate(
           [&](double d) {
             const double v = exact[k] + side * d, weight = peak(v) - scale;
@@ -220,7 +219,8 @@ class WardFull final : public Case {
     };
     for (double half : {0.0, kPid}) {
       const double across = std::atan2(-ax_ * cosPhi_, ay_ * sinPhi_) + half;  // of the plane of incidence
-      grade(across, square(std::hypot(ax_ * std::cos(across), ay_ * std::sin(across))) / (ax_ * ay_ * std::max(1.0, tan_)));
+      grade(across,
+            square(std::hypot(ax_ * std::cos(across), ay_ * std::sin(across))) / (ax_ * ay_ * std::max(1.0, tan_)));
       if (!isotropic_) grade(ax_ < ay_ ? half : half + kPid / 2, std::min(ax_, ay_) / std::max(ax_, ay_));
     }
     std::sort(breaks.begin(), breaks.end());
@@ -323,7 +323,8 @@ class PhongFull final : public Case {
     const double cosGamma = to == kPid / 2 ? std::sin(left) : gamma > kPid / 2 ? 0 : std::cos(gamma);
     const PhongValue<double> v = phongEvaluate(cosGamma, m_);
     const double logLobe = cosGamma > 0 ? std::log((m_ + 1) / (2 * kPid)) + m_ * std::log(cosGamma) : -kInfinity;
-    return point(ci, v.f * ci, logLobe, 2 * kPid * (from > 0 ? 0.5 : 1) * std::sin(gamma) * sigma * c * std::cosh(c * u));
+    return point(ci, v.f * ci, logLobe,
+                 2 * kPid * (from > 0 ? 0.5 : 1) * std::sin(gamma) * sigma * c * std::cosh(c * u));
   }
 
   double m_;
@@ -347,7 +348,8 @@ class WardPlanar final : public Case {
 
   std::vector<Chart> charts() const override {
     // in two parts, each graded towards its end
-    return {{[this](double u, double) { return at(0, s0_, u); }, 1}, {[this](double u, double) { return at(0, s1_, u); }, 1}};
+    return {{[this](double u, double) { return at(0, s0_, u); }, 1},
+            {[this](double u, double) { return at(0, s1_, u); }, 1}};
   }
   double outside(int) const override { return 0; }
   double lobeNormalization() const override { return std::exp(logZ_); }
@@ -361,18 +363,18 @@ class WardPlanar final : public Case {
     for (const auto& [end, eMax] : {std::pair{t0_, e0}, {t1_, e1}}) {
       if (top - eMax > 700 || end == 0) continue;
       const double sign = end < 0 ? -1 : 1;
-      sum += std::exp(eMax - top) *
-             quadrature.integrate(
-                 [&, end = end, eMax = eMax](double y) {
-                   const double r = std::sqrt(std::max(0.0, eMax - y)), t = sign * alpha_ * r;
-                   if (!(r > 0)) return 0.0;
-                   const double left = alpha_ * y / (std::sqrt(eMax) + r);  // distance to the end
-                   const Spot s = spotAt(t, end < 0 ? left : t - t0_, end < 0 ? t1_ - t : left);
-                   // f^2/p dx, p dx = exp(logLobe + E) e^-E dx
-                   const double f = value(s, 1).f, dx = s.perT * alpha_ / (2 * r);
-                   return std::exp(-y - logLobe(s) - s.e) * f * f * dx;
-                 },
-                 0.0, std::min(eMax, 200.0), 1e-11);
+      sum += std::exp(eMax - top) * quadrature.integrate(
+                                        [&, end = end, eMax = eMax](double y) {
+                                          const double r = std::sqrt(std::max(0.0, eMax - y)), t = sign * alpha_ * r;
+                                          if (!(r > 0)) return 0.0;
+                                          const double left =
+                                              alpha_ * y / (std::sqrt(eMax) + r);  // distance to the end
+                                          const Spot s = spotAt(t, end < 0 ? left : t - t0_, end < 0 ? t1_ - t : left);
+                                          // f^2/p dx, p dx = exp(logLobe + E) e^-E dx
+                                          const double f = value(s, 1).f, dx = s.perT * alpha_ / (2 * r);
+                                          return std::exp(-y - logLobe(s) - s.e) * f * f * dx;
+                                        },
+                                        0.0, std::min(eMax, 200.0), 1e-11);
     }
     return top + std::log(sum);
   }
@@ -383,7 +385,8 @@ class WardPlanar final : public Case {
     const StudyTechnique technique = this->technique(i);
     const double a0 = t0_ / alpha_, a1 = t1_ / alpha_, w0 = w(0), k = (w(t1_) - w0) / t1_;
     const double erf0 = std::erf(a0), erf1 = std::erf(a1), rayleigh = -std::expm1(-a1 * a1);
-    const double gaussMass = w0 * alpha_ * std::sqrt(kPid) / 2 * (erf1 - erf0), mass = gaussMass + k * alpha_ * alpha_ / 2 * rayleigh;
+    const double gaussMass = w0 * alpha_ * std::sqrt(kPid) / 2 * (erf1 - erf0),
+                 mass = gaussMass + k * alpha_ * alpha_ / 2 * rayleigh;
     const auto lobe = [&] {
       while (true) {
         double t;

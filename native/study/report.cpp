@@ -29,7 +29,8 @@ Derived derive(const Study& study, const StrategyRun& run) {
   if (e.count() < 2) return d;
   d.variance = e.variance();
   d.z = e.error() > 0 ? (e.mean() - study.exact.moments.integral) / e.error() : 0;
-  d.low = std::max(0.0, d.variance - kNormal95 * e.varianceError()), d.high = d.variance + kNormal95 * e.varianceError();
+  d.low = std::max(0.0, d.variance - kNormal95 * e.varianceError()),
+  d.high = d.variance + kNormal95 * e.varianceError();
   if (run.predictedVariance && *run.predictedVariance > 0) d.ratio = d.variance / *run.predictedVariance;
   d.varianceCost = d.variance * run.seconds;
   return d;
@@ -89,15 +90,15 @@ std::string studyTable(const Study& s) {
   const IntegrandMoments& m = s.exact.moments;
   std::string out = title(s.input) + "\n";
   const bool planar = s.input.mode == StudyMode::kPlanar;
-  out += fmt::format("{} = {:.12g}{}   (quadrature, relative error about {:.0e})\n\n",
-                     planar ? "integral of the 1-D reduction + diffuse part" : "L_o", m.integral + s.exact.diffusePart,
-                     s.exact.diffusePart > 0 ? fmt::format(" = {:.12g} + {:.6g} diffuse", m.integral, s.exact.diffusePart)
-                                             : "",
-                     s.exact.relativeError);
+  out += fmt::format(
+      "{} = {:.12g}{}   (quadrature, relative error about {:.0e})\n\n",
+      planar ? "integral of the 1-D reduction + diffuse part" : "L_o", m.integral + s.exact.diffusePart,
+      s.exact.diffusePart > 0 ? fmt::format(" = {:.12g} + {:.6g} diffuse", m.integral, s.exact.diffusePart) : "",
+      s.exact.relativeError);
   std::vector<std::vector<std::string>> rows{{"technique", "mu_i,eq", "sigma^2_i,eq", "m^2_i", "outside", "ns/sample"}};
   for (int i = 0; i < n; ++i)
-    rows.push_back({std::string(name(s.input.techniques[at(i)])), number(m.mean[at(i)], 6), number(m.variance[at(i)], 6),
-                    big(m.logSecond[at(i)]), number(s.exact.points.outside[at(i)], 3),
+    rows.push_back({std::string(name(s.input.techniques[at(i)])), number(m.mean[at(i)], 6),
+                    number(m.variance[at(i)], 6), big(m.logSecond[at(i)]), number(s.exact.points.outside[at(i)], 3),
                     number(s.costNanoseconds[at(i)], 3)});
   out += aligned(rows);
 
@@ -124,8 +125,11 @@ std::string studyTable(const Study& s) {
     }
     out += aligned(rows);
   }
-  out += "\nN Var: exact, for real-valued fractions. Where counts follow the samples (~, those of the last pass), it is that of the\n"
-         "exact fractions, the strategy's goal. 'variance' and 'equal' have the same N Var whatever the case (docs/theory.md).\n";
+  out +=
+      "\nN Var: exact, for real-valued fractions. Where counts follow the samples (~, those of the last pass), it is "
+      "that of the\n"
+      "exact fractions, the strategy's goal. 'variance' and 'equal' have the same N Var whatever the case "
+      "(docs/theory.md).\n";
   return out;
 }
 
@@ -170,7 +174,8 @@ json studyJson(const Study& s) {
 
 std::string studyCsv(const Study& s) {
   std::string out =
-      "strategy,samples,trials,seed,exact_integral,nvar,predicted_variance,mean,bias_z,variance,variance_low95,variance_high95,"
+      "strategy,samples,trials,seed,exact_integral,nvar,predicted_variance,mean,bias_z,variance,variance_low95,"
+      "variance_high95,"
       "variance_over_predicted,seconds_per_trial\n";
   const auto cell = [](double x) { return std::isfinite(x) ? fmt::format("{:.17g}", x) : std::string(); };
   for (size_t k = 0; k < s.runs.size(); ++k)
@@ -206,21 +211,24 @@ void plotStudy(const Study& s, const std::string& path) {
       "set tmargin 3\nset border lc rgb '#666666'\nset tics font ',9'\n",
       gnuplotText(title(s.input)));
   // a colour and a point of its own each; the ones that the paper compares first and thick
-  static constexpr const char* kColours[] = {"#000000", "#d62728", "#ff9896", "#1f77b4", "#aec7e8", "#2ca02c", "#98df8a",
-                                             "#9467bd", "#8c564b", "#c49c94", "#e377c2", "#7f7f7f", "#bcbd22", "#17becf",
-                                             "#9edae5", "#393b79", "#637939", "#8c6d31", "#843c39", "#7b4173", "#3182bd",
-                                             "#e6550d"};
+  static constexpr const char* kColours[] = {"#000000", "#d62728", "#ff9896", "#1f77b4", "#aec7e8", "#2ca02c",
+                                             "#98df8a", "#9467bd", "#8c564b", "#c49c94", "#e377c2", "#7f7f7f",
+                                             "#bcbd22", "#17becf", "#9edae5", "#393b79", "#637939", "#8c6d31",
+                                             "#843c39", "#7b4173", "#3182bd", "#e6550d"};
   const auto line = [&](size_t k) {
     return fmt::format("lc rgb '{}' lw {}", kColours[k % std::size(kColours)], k < 3 ? "1.8" : "1.2");
   };
   const auto style = [&](size_t k) { return fmt::format("{} pt {} ps 0.7", line(k), 1 + k % 13); };
-  script += "set origin 0,0\nset size 0.42,0.95\nset key off noenhanced\nset xlabel 'samples N'\nset ylabel 'N x variance (bars: 95 %; lines: exact)'\nplot ";
+  script +=
+      "set origin 0,0\nset size 0.42,0.95\nset key off noenhanced\nset xlabel 'samples N'\nset ylabel 'N x variance "
+      "(bars: 95 %; lines: exact)'\nplot ";
   for (size_t k = 0; k < strategies; ++k)
     script += fmt::format("{0}$s{1} using 1:7 with lines {3} notitle, $s{1} using 1:2:3:4 with yerrorbars {2} notitle",
                           k > 0 ? ", " : "", k, style(k), line(k));
-  script += "\nset origin 0.42,0\nset size 0.58,0.95\nset key outside right top font ',9' noenhanced\n"
-            "set xlabel 'seconds of one estimate (drawing and combining)'\nset format x '10^{%T}'\n"
-            "set ylabel 'standard deviation of the estimate'\nplot ";
+  script +=
+      "\nset origin 0.42,0\nset size 0.58,0.95\nset key outside right top font ',9' noenhanced\n"
+      "set xlabel 'seconds of one estimate (drawing and combining)'\nset format x '10^{%T}'\n"
+      "set ylabel 'standard deviation of the estimate'\nplot ";
   for (size_t k = 0; k < strategies; ++k)
     script += fmt::format("{}$s{} using 5:6 with linespoints {} title {}", k > 0 ? ", " : "", k, style(k),
                           gnuplotText(std::string(s.runs[0][k].strategy->name)));

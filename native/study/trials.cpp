@@ -118,8 +118,10 @@ Points pooled(const Trial& t, const Counts& count) {
   for (int i = 0; i < t.techniques; ++i)
     for (int j = 0; j < count[at(i)]; ++j) {
       const Point x = pooledPoint(t.f(i, j), t.p(i, j), n, t.techniques);
-      if (x.w > 0) points.list.push_back(x);
-      else below[at(i)] += 1;
+      if (x.w > 0)
+        points.list.push_back(x);
+      else
+        below[at(i)] += 1;
     }
   for (int i = 0; i < t.techniques; ++i)
     if (count[at(i)] > 0) points.outside[at(i)] = below[at(i)] / count[at(i)];
@@ -238,7 +240,9 @@ std::vector<StrategyRun> runTrials(const Problem& problem, const Exact& exact,
     for (int i = 0; i < n; ++i) t.blocks[at(i)].resize(at(needed[at(i)]), n);
     return t;
   });
-  const auto since = [](Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); };
+  const auto since = [](Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  };
   tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
   arena.execute([&] {
     tbb::parallel_for(tbb::blocked_range<size_t>(0, trials, 1), [&](const auto& range) {

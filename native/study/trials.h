@@ -20,18 +20,18 @@ struct TrialSettings {
 
 struct StrategyRun {
   const Strategy* strategy = nullptr;
-  Prediction exact;                              // for real-valued fractions
-  std::array<int, kMaxTechniques> counts{};      // of the given knowledge; else of its last trial's main part
-  std::optional<double> predictedVariance;       // for these counts; none where counts follow the samples
-  Estimate estimate;                             // of the integral (without the diffuse part), over the trials
-  double seconds = 0;                            // of one trial: drawing by the given costs, and combining as measured
+  Prediction exact;                          // for real-valued fractions
+  std::array<int, kMaxTechniques> counts{};  // of the given knowledge; else of its last trial's main part
+  std::optional<double> predictedVariance;   // for these counts; none where counts follow the samples
+  Estimate estimate;                         // of the integral (without the diffuse part), over the trials
+  double seconds = 0;                        // of one trial: drawing by the given costs, and combining as measured
 };
 
 // Nanoseconds that one sample of each technique takes, drawn and evaluated under all densities: median of several.
 Densities measureCost(const Problem& problem);
 
-// Throws Error(usage) where there are fewer samples than techniques. The samples of a trial are shared: each strategy takes
-// the first ones of every technique, so that strategies are compared on the same luck.
+// Throws Error(usage) where there are fewer samples than techniques. The samples of a trial are shared: each strategy
+// takes the first ones of every technique, so that strategies are compared on the same luck.
 std::vector<StrategyRun> runTrials(const Problem& problem, const Exact& exact,
                                    const std::vector<const Strategy*>& strategies, const TrialSettings& settings);
 

@@ -102,7 +102,9 @@ class Study(CommandTest):
         )  # fmt: skip
         with table.open() as file:
             rows = list(csv.DictReader(file))
-        self.assertEqual([(r["samples"], r["strategy"]) for r in rows], [(str(n), s) for n in (16, 32, 64, 128) for s in names])
+        self.assertEqual(
+            [(r["samples"], r["strategy"]) for r in rows], [(str(n), s) for n in (16, 32, 64, 128) for s in names]
+        )
         self.assertAlmostEqual(float(rows[0]["exact_integral"]), 0.25383768237261395, 9)
         self.assertIn("second-moment", figure.read_text())
         self.run_command("study", "--trials", "2", "--plot", self.folder / "s.png")

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What tests of random quantities need: a generator that is not the renderer's own, and the chi-square test of a sampler
-// against its density.
+// What tests of random quantities need: a generator that is not the renderer's own, and the chi-square test of a
+// sampler against its density.
 #pragma once
 
 #include <algorithm>

@@ -221,8 +221,8 @@ TEST(WardPatch, AgreesWithQuadrature) {
     const double want =
         in.value("joint", false) ? integrand0 : integrand0 + diffuse;  // joint cases have rho_d = 0.3 inside
     for (Integrand integrand : {Integrand::kSplit, Integrand::kJoint})
-      for (Allocation rule : {Allocation::kEqual, Allocation::kVariance, Allocation::kSecondMoment,
-                              Allocation::kAlbedo, Allocation::kAuto}) {
+      for (Allocation rule : {Allocation::kEqual, Allocation::kVariance, Allocation::kSecondMoment, Allocation::kAlbedo,
+                              Allocation::kAuto}) {
         RenderSettings s = settings(32);
         s.allocation = rule;
         s.integrand = integrand;

@@ -57,9 +57,8 @@ RenderSettings quick() {
 TEST(Render, DoesNotDependOnThreads) {
   const Scene scene = mixedScene();
   for (SamplerType sampler : {SamplerType::kIndependent, SamplerType::kStratified, SamplerType::kSobol})
-    for (Allocation rule :
-         {Allocation::kEqual, Allocation::kVariance, Allocation::kSecondMoment, Allocation::kAlbedo,
-          Allocation::kAuto}) {
+    for (Allocation rule : {Allocation::kEqual, Allocation::kVariance, Allocation::kSecondMoment, Allocation::kAlbedo,
+                            Allocation::kAuto}) {
       RenderSettings s = quick();
       s.sampler = sampler;
       s.allocation = rule;
@@ -118,10 +117,9 @@ TEST(Render, EveryAllocationAgrees) {
   s.spp = 96;
   s.seed = 5;
   s.samplesPerHit = 5;
-  for (Allocation rule :
-       {Allocation::kEqual, Allocation::kVariance, Allocation::kStandardDeviation, Allocation::kSecondMoment,
-        Allocation::kInverseVariance, Allocation::kEqualised, Allocation::kRepresentativity, Allocation::kAlbedo,
-        Allocation::kAuto})
+  for (Allocation rule : {Allocation::kEqual, Allocation::kVariance, Allocation::kStandardDeviation,
+                          Allocation::kSecondMoment, Allocation::kInverseVariance, Allocation::kEqualised,
+                          Allocation::kRepresentativity, Allocation::kAlbedo, Allocation::kAuto})
     for (Weights weights :
          {Weights::kBalance, Weights::kNonbalance, Weights::kPower, Weights::kCutoff, Weights::kMaximum})
       for (Integrand integrand : {Integrand::kSplit, Integrand::kJoint}) {

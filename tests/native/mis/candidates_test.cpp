@@ -38,8 +38,7 @@ double variance(const WardCase& c, const Fractions& a, uint64_t seed) {
   const int n = 33;
   const Mixture mixture(a, n, Weights::kBalance);
   Estimate e;
-  for (int k = 0; k < 4000; ++k)
-    e.add(estimate(c, mixture, systematicCounts(a, n, random.square<float>().x), random));
+  for (int k = 0; k < 4000; ++k) e.add(estimate(c, mixture, systematicCounts(a, n, random.square<float>().x), random));
   return n * e.variance();
 }
 

@@ -26,7 +26,8 @@ void compare(const json& expect, const json& ours, const std::string& path, doub
       compare(value, mine, here, tolerance, wrong);
     } else if (value.is_number()) {
       const double e = value.get<double>(), o = mine.is_number() ? mine.get<double>() : std::nan("");
-      if (!(std::abs(o - e) <= tolerance * std::abs(e))) wrong.push_back(here + ": " + mine.dump() + ", not " + value.dump());
+      if (!(std::abs(o - e) <= tolerance * std::abs(e)))
+        wrong.push_back(here + ": " + mine.dump() + ", not " + value.dump());
     } else if (value.is_null() && !mine.is_null()) {
       wrong.push_back(here + ": " + mine.dump() + ", not beyond double's range");
     }
@@ -39,7 +40,8 @@ void check(const json& c) {
   const json ours = expectJson(input, exact);
   std::vector<std::string> wrong;
   compare(c["expect"], ours, "", 1e-6, wrong);
-  for (const std::string& w : wrong) ADD_FAILURE() << c["input"].dump() << w << " (" << exact.points.list.size() << " points)";
+  for (const std::string& w : wrong)
+    ADD_FAILURE() << c["input"].dump() << w << " (" << exact.points.list.size() << " points)";
 }
 
 TEST(Golden, EveryEstimatorCase) {

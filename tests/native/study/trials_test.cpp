@@ -12,9 +12,9 @@ namespace {
 using nlohmann::json;
 
 // 55 cases x 22 strategies: with |z| < 4 for the means and five standard errors for the variances, one of 15,000 right
-// checks fails by chance, about one in ten runs of the whole with another seed; this seed is none of them. Sharper lobes
-// are left out: what the cosine technique finds of them is so rare that 10^4 trials may see none of it, and neither mean
-// nor variance tells. The same goes for a variance whose own standard error is a quarter of it.
+// checks fails by chance, about one in ten runs of the whole with another seed; this seed is none of them. Sharper
+// lobes are left out: what the cosine technique finds of them is so rare that 10^4 trials may see none of it, and
+// neither mean nor variance tells. The same goes for a variance whose own standard error is a quarter of it.
 TEST(Trials, MeanAndVarianceAreThoseOfQuadrature) {
   std::vector<const Strategy*> all;
   for (const Strategy& s : strategies()) all.push_back(&s);
@@ -36,7 +36,8 @@ TEST(Trials, MeanAndVarianceAreThoseOfQuadrature) {
         if (e.varianceError() > 0.25 * e.variance()) continue;
         EXPECT_LT(std::abs(e.mean() - exact.moments.integral), 4 * e.error() + 1e-13 * exact.moments.integral);
         ++checked;
-        if (!run.predictedVariance || !(e.variance() > 1e-24 * exact.moments.integral * exact.moments.integral)) continue;
+        if (!run.predictedVariance || !(e.variance() > 1e-24 * exact.moments.integral * exact.moments.integral))
+          continue;
         EXPECT_LT(std::abs(e.variance() - *run.predictedVariance), 5 * e.varianceError());
         ++variances;
       }
