@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <new>
+#include <optional>
 
 #include "integrate/interaction.h"
 #include "math/check.h"
@@ -142,11 +143,11 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
   if (vectorised) evaluate(s, wo, batch, j);
 
   HitMoments* const moments = record != nullptr ? &record->moments : nullptr;
-  const bool withCandidates = record != nullptr && record->candidates != nullptr;
-  CandidateHit candidates(candidatesOf(plan.available));
+  std::optional<CandidateHit> candidates;
+  if (record != nullptr && record->candidates != nullptr) candidates.emplace(candidatesOf(plan.available));
   const auto note = [&](Moments& m, Rgb f, const Fractions& p, TechniqueMask used) {
     m.add(luminance(f), p, mixture.n, used);
-    if (withCandidates) candidates.add(luminance(f), p, mixture.n, used);
+    if (candidates) candidates->add(luminance(f), p, mixture.n, used);
   };
 
   // One sample's share of an emitter's light, by MIS over the techniques of each integral.
@@ -248,7 +249,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     }
   }
   if (moments != nullptr) moments->specular.hits += 1, moments->diffuse.hits += 1;
-  if (withCandidates) candidates.addTo(*record->candidates, record->cost);
+  if (candidates) candidates->addTo(*record->candidates, record->cost);
   return sum;
 }
 
