@@ -257,7 +257,7 @@ DecodedImage Materials::decode(const PendingImage& pending, const Bytes& bytes, 
     const RawLayout layout{number("width", kLargestImageSide), number("height", kLargestImageSide),
                            number("channels", 4), raw->at("type").choice(kTypes)};
     return rawImage(bytes.data, layout, pending.space, budget);
-  } catch (const ImageError& e) {
+  } catch (const UnreadableImage& e) {
     json.fail(fmt::format("{} (needed by {})", e.what(), pending.neededBy), "export the scene again");
   }
 }

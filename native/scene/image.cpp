@@ -41,7 +41,7 @@ DecodedImage decodeImage(std::span<const std::byte> file, ColorSpace space, Imag
     return {Image{"", 1, 1, 3, true, {255, 0, 255}, {}}, 0, e.what()};
   }
   if (!budget.take(read.image.bytes.size() + read.image.floats.size() * sizeof(float)))
-    throw ImageError("is one of too many images with the same data");
+    throw UnreadableImage("is one of too many images with the same data");
   if (space == ColorSpace::kAuto) space = read.integers ? ColorSpace::kSrgb : ColorSpace::kLinear;
   return finished(std::move(read.image), space);
 }
@@ -50,9 +50,9 @@ DecodedImage rawImage(std::span<const std::byte> data, RawLayout layout, ColorSp
   const size_t values = size_t(layout.width) * layout.height * layout.channels;
   const size_t size = values * (layout.floats ? sizeof(float) : 1);
   if (data.size() != size)
-    throw ImageError(fmt::format("{} x {} pixels of {} channels need {} bytes, found {}", layout.width, layout.height,
+    throw UnreadableImage(fmt::format("{} x {} pixels of {} channels need {} bytes, found {}", layout.width, layout.height,
                                  layout.channels, size, data.size()));
-  if (!budget.take(size)) throw ImageError("is one of too many images with the same data");
+  if (!budget.take(size)) throw UnreadableImage("is one of too many images with the same data");
   Image image;
   image.width = layout.width;
   image.height = layout.height;

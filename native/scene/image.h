@@ -25,7 +25,7 @@ struct DecodedImage {
 constexpr int kLargestImageSide = 1 << 16;
 
 // Says what is wrong with an image; the caller knows its name and place.
-struct ImageError : std::runtime_error {
+struct UnreadableImage : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
