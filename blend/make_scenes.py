@@ -90,11 +90,11 @@ def furnace():
 def stiff_mirror():
     """A plate of alpha = 1e-4 under a pin-point light and a bright sky, and two posts that reflect nothing."""
     stiff()
-    add_mesh("Plate", *square(4), ward("Mirror", BLACK, (0.9, 0.8, 0.7), 1e-4, "ward-gmd"))
+    add_mesh("Plate", *square(4), ward("Mirror", BLACK, grey(0.8), 1e-4, "ward-gmd"))
     for number, (x, y, height) in enumerate(((-1.5, 0.5, 1.25), (1.25, 1.5, 1.75)), 1):
         post = add_mesh(f"Post {number}", *box_mesh(), ward(f"Post {number}", BLACK, BLACK, 0.3, "ward-gmd"))
         post.location, post.scale = (x, y, height / 2), (0.25, 0.25, height / 2)
-    add_point((0, 1, 1), 3.0, 0.01)
+    add_point((0.2, 1, 1), 3.0, 0.01)
     add_camera((0, -6, 2.5), (0, 0.5, 0.6), 45)
     empty_world().nodes["Background"].inputs["Color"].default_value = (0.5, 0.65, 0.9, 1)
 

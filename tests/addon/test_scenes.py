@@ -41,8 +41,10 @@ class Files(unittest.TestCase):
                 self.assertEqual(scene.notes, [])
                 self.assertEqual(bpy.context.scene.render.engine, "WARDMIS")
                 self.assertEqual(bpy.context.scene.view_settings.view_transform, "Standard")
-                self.assertEqual(scene.film.resolution, (512, 256) if name == "furnace" else (768, 512))
-                self.assertLess((BLEND / f"{name}.blend").stat().st_size, 1 << 20)
+                stiff = name.startswith("stiff-")
+                size = (512, 256) if name == "furnace" else (512, 384) if stiff else (768, 512)
+                self.assertEqual(scene.film.resolution, size)
+                self.assertLess((BLEND / f"{name}.blend").stat().st_size, 100_000 if stiff else 1 << 20)
 
     def test_cycles_is_set_up_without_bias(self):
         for name in make_scenes.SCENES:
@@ -127,6 +129,25 @@ class Files(unittest.TestCase):
         self.assertEqual((half.diffuse.value, half.specular.value), ((0.5, 0.5, 0.5), (0, 0, 0)))
         self.assertEqual(ward.variant, "ward-gmd")
         self.assertTrue(all(mesh.normals is None for mesh in scene.meshes))
+
+    def test_stiff_scenes_are_as_extreme_as_they_say(self):
+        alphas = [m.alpha_x.value for m in self.open("stiff-alphas").materials]
+        np.testing.assert_allclose((min(alphas), max(alphas)), (1e-6, 10), rtol=1e-6)
+        self.assertAlmostEqual(self.material(self.open("stiff-mirror"), "Mirror").alpha_x.value, 1e-4)
+        self.assertEqual(sorted(round(light.size[0], 6) for light in self.open("stiff-lights").lights), [1e-4, 10])
+        self.open("stiff-large")
+        self.assertEqual(max(max(o.matrix_world.translation) for o in bpy.data.objects) // 1000, 1002)
+        self.open("stiff-small")
+        self.assertLess(max(max(abs(v) for v in o.matrix_world.translation) for o in bpy.data.objects), 1e-5)
+
+    def test_stiff_mesh_is_broken(self):
+        self.open("stiff-mesh")
+        mesh = bpy.data.objects["Wings"].data
+        edges = Counter(key for polygon in mesh.polygons for key in polygon.edge_keys)
+        self.assertGreater(max(edges.values()), 2)
+        self.assertTrue(any(polygon.area == 0 for polygon in mesh.polygons))
+        places = [tuple(vertex.co) for vertex in mesh.vertices]
+        self.assertLess(len(set(places)), len(places))
 
 
 class Teapot(unittest.TestCase):

@@ -15,7 +15,13 @@ import numpy as np
 from blender import ROOT
 
 BINARY = os.environ.get("WARDMIS_BINARY", "")
-EXPORT = "import sys, wardmis; wardmis.export_scene(sys.argv[-1])"
+EXPORT = """
+import sys, bpy, wardmis
+blend, exports, *names = sys.argv[sys.argv.index("--") + 1 :]
+for name in names:
+    bpy.ops.wm.open_mainfile(filepath=f"{blend}/{name}.blend", load_ui=False)
+    wardmis.export_scene(f"{exports}/{name}.glb")
+"""
 
 
 class CommandTest(unittest.TestCase):
@@ -28,11 +34,7 @@ class CommandTest(unittest.TestCase):
         temporary = tempfile.TemporaryDirectory()
         cls.addClassCleanup(temporary.cleanup)
         cls.exports = Path(temporary.name)
-        for name in cls.scenes:
-            path = cls.exports / f"{name}.glb"
-            blender.run(
-                ROOT / "blend" / f"{name}.blend", "--python-exit-code", "1", "--python-expr", EXPORT, "--", path
-            )
+        blender.run("--python-exit-code", "1", "--python-expr", EXPORT, "--", ROOT / "blend", cls.exports, *cls.scenes)
 
     def setUp(self):
         temporary = tempfile.TemporaryDirectory()

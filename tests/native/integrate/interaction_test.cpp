@@ -87,5 +87,22 @@ TEST(Interaction, RayThatLeavesDoesNotMeetItsSurface) {
     }
 }
 
+// Without interpolated normals there is nothing to bend: the frame is the surface's own down to the smallest angle.
+TEST(Interaction, FlatSurfaceKeepsItsNormalAtGrazingAngles) {
+  Scene scene;
+  scene.materials = {ward({0.5f, 0.5f, 0.5f}, {0, 0, 0}, 0.1f, WardVariant::kWardGmd)};
+  addPlane(scene, 1, 0);
+  const Geometry geometry(scene);
+  const Accel accel(geometry, 1);
+  for (float cosine : {1e-2f, 1e-3f, 1e-4f, 1e-5f}) {
+    Ray ray;
+    ray.direction = normalize(Vec3f{1, 0, -cosine});
+    ray.origin = Vec3f{0.1f, 0.2f, 0} - ray.direction * 2;
+    const Hit hit = accel.intersect(ray);
+    ASSERT_TRUE(hit.valid()) << cosine;
+    EXPECT_EQ(interact<0>(scene, geometry, ray, hit).frame.z, (Vec3f{0, 0, 1})) << cosine;
+  }
+}
+
 }  // namespace
 }  // namespace wardmis
