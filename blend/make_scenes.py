@@ -287,14 +287,10 @@ def broken_mesh():
     vertices, faces = [], []
     for angle in np.arange(5) * 2 * math.pi / 5:
         x, y = math.cos(angle), math.sin(angle)
-        first = len(vertices)
-        # the second triangle has its own copies of two corners, and the corners of those without area lie on one line
+        n = len(vertices)
         vertices += [(0, 0, 0), (x, y, 0), (x, y, 1), (0, 0, 0), (x, y, 1), (0, 0, 1), (x / 2, y / 2, 0.5), (x, y, 1)]
-        faces += [(0, 1, 2), (3, 4, 5), (0, 6, 2), (2, 4, 7), (3, 5, 0)]
-        faces[-5:] = [tuple(first + corner for corner in face) for face in faces[-5:]]
-    # an edge that wings share: the same two vertices in all of them
-    for face in range(0, len(faces), 5):
-        faces[face + 1] = (faces[1][0], faces[face + 1][1], faces[1][2])
+        # the second triangles all stand on the first wing's edge from 3 to 5; the last three have their corners on a line
+        faces += [(n, n + 1, n + 2), (3, n + 4, 5), (n, n + 6, n + 2), (n + 2, n + 4, n + 7), (n + 3, n + 5, n)]
     return vertices, faces
 
 
