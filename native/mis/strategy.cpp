@@ -56,13 +56,11 @@ double mixture(const Densities& a, const Densities& p, int n) {
 class LogSum {
  public:
   void add(double weight, double x) {
-    if (!(weight > 0) || x == -kInfinity) return;
-    if (x > scale_)
-      sum_ = sum_ * std::exp(scale_ - x) + weight, scale_ = x;
-    else
-      sum_ += weight * std::exp(x - scale_);
+    if (!(weight > 0) || x == -kInfinity) return;  // a value that is not a number stays one
+    if (!(x <= scale_)) sum_ = sum_ * std::exp(scale_ - x) + weight, scale_ = x;
+    else sum_ += weight * std::exp(x - scale_);
   }
-  double log() const { return sum_ > 0 ? scale_ + std::log(sum_) : -kInfinity; }
+  double log() const { return sum_ == 0 ? -kInfinity : scale_ + std::log(sum_); }
 
  private:
   double scale_ = -kInfinity, sum_ = 0;
@@ -342,23 +340,23 @@ Densities fractions(Allocation rule, const Points& points, const IntegrandMoment
   return normalise(a, n) ? a : equalFractions(n);
 }
 
-double weightOverDensity(Weights rule, int i, int n, const Densities& p, const Densities& a, const Densities& v) {
+double weightedValue(Weights rule, int i, int n, double f, const Densities& p, const Densities& a, const Densities& v) {
   const double own = a[at(i)] * p[at(i)];
   switch (rule) {
     case W::kBalance: {
       const double q = mixture(a, p, n);
-      return q > 0 ? a[at(i)] / q : 0;
+      return q > 0 ? a[at(i)] * (f / q) : 0;
     }
     case W::kNonbalance: {
       double sum = 0;
       for (int k = 0; k < n; ++k) sum += p[at(k)];
-      return sum > 0 ? 1 / sum : 0;
+      return sum > 0 ? f / sum : 0;
     }
     case W::kPower: {  // by ratios: squares overflow and underflow
       if (!(own > 0)) return 0;
       double sum = 0;
       for (int k = 0; k < n; ++k) sum += square(a[at(k)] * p[at(k)] / own);
-      return 1 / (sum * p[at(i)]);
+      return f / (sum * p[at(i)]);
     }
     case W::kCutoff: {
       double top = 0, sum = 0;
@@ -366,17 +364,17 @@ double weightOverDensity(Weights rule, int i, int n, const Densities& p, const D
       if (!(own > 0) || own < kCutoffRatio * top) return 0;
       for (int k = 0; k < n; ++k)
         if (a[at(k)] * p[at(k)] >= kCutoffRatio * top) sum += a[at(k)] * p[at(k)];
-      return a[at(i)] / sum;
+      return a[at(i)] * (f / sum);
     }
     case W::kMaximum: {
       for (int k = 0; k < n; ++k)
         if (a[at(k)] * p[at(k)] > own || (k < i && a[at(k)] * p[at(k)] == own)) return 0;
-      return own > 0 ? 1 / p[at(i)] : 0;
+      return own > 0 ? f / p[at(i)] : 0;
     }
     case W::kVarianceAware: {
       double sum = 0;
       for (int k = 0; k < n; ++k) sum += v[at(k)] * a[at(k)] * p[at(k)];
-      return sum > 0 ? v[at(i)] * a[at(i)] / sum : 0;
+      return sum > 0 ? v[at(i)] * a[at(i)] * (f / sum) : 0;
     }
     case W::kOptimal:
       break;  // no function of a and p alone
@@ -401,9 +399,35 @@ Densities optimalTau(const Points& points, const Densities& a) {
   return tau;
 }
 
+Contributions contributions(Weights rule, const Densities& a, const Points& points, const IntegrandMoments& m) {
+  const int n = points.techniques;
+  const Densities v = rule == W::kVarianceAware ? varianceAwareFactors(m) : Densities{};
+  const Densities tau = rule == W::kOptimal ? optimalTau(points, a) : Densities{};
+  const auto y = [&](int i, const Point& x) {
+    if (rule != W::kOptimal) return weightedValue(rule, i, n, x.f, x.p, a, v);
+    const double q = mixture(a, x.p, n);
+    return q > 0 ? a[at(i)] * ((x.f - mixture(tau, x.p, n)) / q) : 0;
+  };
+  Contributions c;
+  for (int i = 0; i < n; ++i) {
+    if (!(a[at(i)] > 0)) continue;
+    const double outside = points.outside[at(i)], there = rule == W::kOptimal ? -tau[at(i)] : 0;
+    const double mean =
+        points.integrate([&](const Point& x) { return x.p[at(i)] > 0 ? y(i, x) * x.p[at(i)] : 0; }) + outside * there;
+    double variance = outside * square(there - mean), fourth = variance * square(there - mean);
+    for (const Point& x : points.list) {
+      if (!(x.p[at(i)] > 0)) continue;
+      const double d2 = square(y(i, x) - mean), wp = x.w * x.p[at(i)];
+      variance += wp * d2, fourth += wp * d2 * d2;
+    }
+    c.mean[at(i)] = mean, c.variance[at(i)] = variance, c.fourth[at(i)] = fourth;
+  }
+  return c;
+}
+
 double logVariance(Weights rule, const Densities& a, const Points& points, const IntegrandMoments& m) {
   const int n = points.techniques;
-  Densities mean{}, variance{}, tau{}, logA{};
+  Densities variance{}, logA{};
   for (int i = 0; i < n; ++i) logA[at(i)] = std::log(a[at(i)]);
   if (rule == W::kNonbalance) {
     variance = m.variance;
@@ -417,28 +441,11 @@ double logVariance(Weights rule, const Densities& a, const Points& points, const
         if (a[at(i)] < 1e-290) logA[at(i)] = x[at(i)] - sum.log();
     }
   } else {
-    const Densities v = rule == W::kVarianceAware ? varianceAwareFactors(m) : Densities{};
-    if (rule == W::kOptimal) tau = optimalTau(points, a);
-    // one technique's contribution y = w_i f/p_i to its own sum
-    const auto y = [&](int i, const Point& x) {
-      if (rule != W::kOptimal) return x.f * weightOverDensity(rule, i, n, x.p, a, v);
-      const double q = mixture(a, x.p, n);
-      return q > 0 ? a[at(i)] * ((x.f - mixture(tau, x.p, n)) / q) : 0;
-    };
-    Densities outside{};
-    for (int i = 0; i < n; ++i) outside[at(i)] = rule == W::kOptimal ? -tau[at(i)] : 0;
-    for (int i = 0; i < n; ++i) {
-      if (!(a[at(i)] > 0)) continue;
-      const double inside = points.integrate([&](const Point& x) { return x.p[at(i)] > 0 ? y(i, x) * x.p[at(i)] : 0; });
-      mean[at(i)] = inside + points.outside[at(i)] * outside[at(i)];
-      variance[at(i)] = points.integrate([&](const Point& x) {
-        return x.p[at(i)] > 0 ? square(y(i, x) - mean[at(i)]) * x.p[at(i)] : 0;
-      }) + points.outside[at(i)] * square(outside[at(i)] - mean[at(i)]);
-    }
+    variance = contributions(rule, a, points, m).variance;
   }
   LogSum sum;
   for (int i = 0; i < n; ++i)
-    if (variance[at(i)] > 0) sum.add(1, std::log(variance[at(i)]) - logA[at(i)]);
+    if (!(variance[at(i)] == 0)) sum.add(1, std::log(variance[at(i)]) - logA[at(i)]);
   return sum.log();
 }
 

@@ -55,12 +55,19 @@ Densities fractions(Allocation, const IntegrandMoments&, const Densities* cost =
 // The same from points, for every allocation.
 Densities fractions(Allocation, const Points&, const IntegrandMoments&, const Densities* cost = nullptr);
 
-// w_i/p_i, for weights that are functions of a and p (all but kOptimal); v: of kVarianceAware.
-double weightOverDensity(Weights, int i, int techniques, const Densities& p, const Densities& a, const Densities& v);
+// w_i f/p_i, for weights that are functions of a and p (all but kOptimal); v: of kVarianceAware. Finite where w_i/p_i is not:
+// at a lobe's end f and the densities underflow together.
+double weightedValue(Weights, int i, int techniques, double f, const Densities& p, const Densities& a, const Densities& v);
 Densities varianceAwareFactors(const IntegrandMoments&);
 
 // tau of the optimal weights: F = sum_i tau_i + 1/N sum_ij (f - sum_k tau_k p_k)/q (X_ij).
 Densities optimalTau(const Points&, const Densities& a);
+
+// Of y_i = w_i f/p_i at a sample of technique i, its part of the estimate: mean and central moments.
+struct Contributions {
+  Densities mean{}, variance{}, fourth{};
+};
+Contributions contributions(Weights, const Densities& a, const Points&, const IntegrandMoments&);
 
 // ln(N Var) of the multi-sample estimator for real-valued fractions, and of the one-sample estimator with balance
 // weights.

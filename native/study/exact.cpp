@@ -79,7 +79,7 @@ Integrands jumps(int n) {
             std::fill_n(a.begin(), n, 1.0 / n);
             for (Weights rule : {Weights::kCutoff, Weights::kMaximum})
               for (int i = 0; i < n; ++i) {
-                const double y = x.f * weightOverDensity(rule, i, n, x.p, a, {});
+                const double y = weightedValue(rule, i, n, x.f, x.p, a, {});
                 *out++ = y * x.p[at(i)], *out++ = y * y * x.p[at(i)];
               }
           }};
@@ -104,21 +104,21 @@ json fractionsJson(const Densities& a, int n) {
 
 }  // namespace
 
-Exact solve(const Problem& problem) {
+Exact solve(const Problem& problem, size_t effort) {
   const int n = problem.techniques();
   Cubature cubature(problem);
-  cubature.refine(moments(n), 1e-11);
+  cubature.refine(moments(n), 1e-11, effort);
   bool edge = false;
   for (int i = 0; i < n; ++i) edge |= !std::isnan(problem.logSecondMomentAtEdge(i));
-  if (!edge) cubature.refine(secondMoments(n), 1e-10);
+  if (!edge) cubature.refine(secondMoments(n), 1e-10, effort);
 
   Exact e;
   e.points = cubature.points();
   e.moments = momentsOf(e.points);
   for (int i = 0; edge && i < n; ++i)
     if (!std::isnan(problem.logSecondMomentAtEdge(i))) e.moments.variancePrim[at(i)] = INFINITY;
-  cubature.refine(deviations(e.points, e.moments), 1e-9);
-  cubature.refine(jumps(n), 1e-3, 50);
+  cubature.refine(deviations(e.points, e.moments), 1e-9, effort);
+  cubature.refine(jumps(n), 1e-3, std::min<size_t>(50, effort));
 
   e.points = cubature.points();
   e.moments = momentsOf(e.points);

@@ -16,7 +16,8 @@ struct Exact {
   double lobeNormalization = 1;
   double relativeError = 0;  // the largest estimate of the quadrature's
 };
-Exact solve(const Problem& problem);
+// effort: cells that each step of the quadrature may add; fewer than it asks for where the last digits are not needed.
+Exact solve(const Problem& problem, size_t effort = 4000);
 
 // One strategy for given costs (null: equal ones).
 struct Prediction {

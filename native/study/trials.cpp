@@ -102,7 +102,7 @@ double estimate(Weights weights, const Trial& t, const Counts& count, const Dens
         // below the horizon only the lobe's density is left, of which the ratio is known
         sum += (q > 0 ? (t.f(i, j) - control) / q : -tau[at(i)] / a[at(i)]) / all;
       } else if (t.f(i, j) > 0) {
-        sum += t.f(i, j) * weightOverDensity(weights, i, n, p, a, v) / count[at(i)];
+        sum += weightedValue(weights, i, n, t.f(i, j), p, a, v) / count[at(i)];
       }
     }
   }
@@ -135,9 +135,9 @@ double progressive(const Strategy& s, const Trial& t, int samples, Counts& last)
   double sum = 0;
   Densities a{}, tau{};
   std::fill_n(a.begin(), n, 1.0 / n);
-  for (int pass = 0; pass < kPasses; ++pass) {
-    const int size = samples * (pass + 1) / kPasses - samples * pass / kPasses;
-    if (size < n) continue;
+  const int passes = std::min(kPasses, samples / n);  // each technique gets a sample in each
+  for (int pass = 0; pass < passes; ++pass) {
+    const int size = static_cast<int>(int64_t(samples) * (pass + 1) / passes - int64_t(samples) * pass / passes);
     const Counts count = wholeCounts(a, n, size);
     if (s.weights == Weights::kOptimal) {
       double part = 0;
@@ -155,7 +155,7 @@ double progressive(const Strategy& s, const Trial& t, int samples, Counts& last)
     }
     for (int k = 0; k < n; ++k) done[at(k)] += count[at(k)];
     last = count;
-    if (pass + 1 == kPasses) break;
+    if (pass + 1 == passes) break;
     const Points known = pooled(t, done);
     if (s.weights == Weights::kOptimal)
       tau = optimalTau(known, a);
