@@ -22,6 +22,16 @@ constexpr T square(T x) {
   return x * x;
 }
 
+// sin and cos of an angle in degrees, accurate also near 90.
+inline double sinDegrees(double d) {
+  const double unit = kPi<double> / 180;
+  return d > 45 ? std::cos((90 - d) * unit) : std::sin(d * unit);
+}
+inline double cosDegrees(double d) {
+  const double unit = kPi<double> / 180;
+  return d > 45 ? std::sin((90 - d) * unit) : std::cos(d * unit);
+}
+
 // e^x. Underflows to zero through the denormals; +-infinity are fine.
 template <class T>
 inline T exp(T x) {

@@ -12,6 +12,7 @@
 #include "bsdf/phong.h"
 #include "bsdf/ward.h"
 #include "math/warp.h"
+#include "study/slope_disk.h"
 
 namespace wardmis {
 
@@ -19,10 +20,6 @@ namespace {
 
 constexpr double kPid = kPi<double>, kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// sin and cos of an angle in degrees, accurate also near 90.
-double sinDegrees(double d) { return d > 45 ? std::cos((90 - d) * (kPid / 180)) : std::sin(d * (kPid / 180)); }
-double cosDegrees(double d) { return d > 45 ? std::sin((90 - d) * (kPid / 180)) : std::cos(d * (kPid / 180)); }
 
 double sinhDifference(double a, double b) { return 2 * std::cosh((a + b) / 2) * std::sinh((a - b) / 2); }
 
@@ -108,6 +105,8 @@ double logIntegralOfPeaks(const Peak& peak, const Rest& rest) {
     exact.push_back(x);
     scale = std::max(scale, -y);
   }
+  constexpr double kBeyond = 1e12;  // there the logarithm's own rounding is more than what the peak's width adds
+  if (scale > kBeyond) return scale;
   for (size_t k = 0; k < maxima.size(); ++k)
     for (int side : {-1, 1}) {
       // to the lowest point on the way to the neighbouring maximum
@@ -131,62 +130,54 @@ double logIntegralOfPeaks(const Peak& peak, const Rest& rest) {
 class WardFull final : public Case {
  public:
   explicit WardFull(const StudyInput& input)
-      : Case(input), variant_(static_cast<WardVariant>(static_cast<int>(input.brdf) - 1)) {
-    const double phi = std::remainder(input.phiO, 360.0);
-    isotropic_ = input.alphaX == input.alphaY;
-    cosPhi_ = isotropic_ ? 1 : std::cos(phi * (kPid / 180)), sinPhi_ = isotropic_ ? 0 : std::sin(phi * (kPid / 180));
-    wo_ = {so_ * cosPhi_, so_ * sinPhi_, co_};
-    ax_ = input.alphaX, ay_ = input.alphaY, tan_ = so_ / co_;
-    logK_ = -std::log(kPid * ax_ * ay_);
-  }
+      : Case(input),
+        variant_(wardVariant(input.brdf)),
+        disk_(input.alphaX, input.alphaY, input.thetaO, input.phiO),
+        logK_(-std::log(kPid * input.alphaX * input.alphaY)) {}
 
-  // Polar coordinates of the microfacet's slope in units of alpha: s = r (ax cos psi, ay sin psi), E = r^2, out to the
-  // horizon, which is the circle |s - T o| = 1/cos(theta_o). In two parts: the lobe, out to r = 12 (or, smoothly, to
-  // where the horizon comes first), and from there on all scales evenly, r = sinh(c).
+  // Polar coordinates of the slope disk, in two parts: the lobe, out to r = 12 (or, smoothly, to where the horizon comes
+  // first), and from there on all scales evenly, r = sinh(c).
   std::vector<Chart> charts() const override {
-    const double turn = isotropic_ ? kPid : 2 * kPid, fold = isotropic_ ? 2 : 1;
-    const auto lobeEnd = [](const Ring& ring) {
+    const double turn = disk_.isotropic() ? kPid : 2 * kPid, fold = disk_.isotropic() ? 2 : 1;
+    const auto lobeEnd = [](const SlopeDisk::Ring& ring) {
       return 1 / std::pow(std::pow(ring.rMax, -4) + std::pow(12.0, -4), 0.25);
     };
-    const std::vector<double> breaks = breaksOf(turn);
+    const std::vector<double> breaks = disk_.breaks(turn);
     return {{[=, this](double u, double v) {
-               const Ring ring = ringAt(turn * v);
+               const SlopeDisk::Ring ring = disk_.ringAt(turn * v);
                const double end = lobeEnd(ring), r = end * u;
-               const Slope s = slopeAt(ring, r, (ring.rMax - end) + end * (1 - u));
+               // beyond the end by rounding alone where the horizon comes first
+               const Slope s = disk_.slopeAt(ring, r, std::max(0.0, ring.rMax - end) + end * (1 - u));
                return at(s, fold * turn * end * r * s.perSlope);
              },
              2, breaks},
             {[=, this](double u, double v) {
-               const Ring ring = ringAt(turn * v);
-               const double c0 = std::asinh(lobeEnd(ring)), c1 = std::asinh(ring.rMax), c = c0 + (c1 - c0) * u;
-               const Slope s = slopeAt(ring, std::sinh(c), sinhDifference(c1, c));
+               const SlopeDisk::Ring ring = disk_.ringAt(turn * v);
+               const double c0 = std::asinh(std::min(lobeEnd(ring), ring.rMax)), c1 = std::asinh(ring.rMax);
+               const double c = c0 + (c1 - c0) * u;
+               const Slope s = disk_.slopeAt(ring, std::sinh(c), sinhDifference(c1, c));
                return at(s, fold * turn * (c1 - c0) * std::cosh(c) * std::sinh(c) * s.perSlope);
              },
              2, breaks}};
   }
 
-  double outside(int i) const override {
-    if (technique(i) != StudyTechnique::kLobe) return 0;
-    return 1 / (2 * kPid) *
-           boost::math::quadrature::gauss_kronrod<double, 61>::integrate(
-               [this](double psi) { return std::exp(-square(ringAt(psi).rMax)); }, 0.0, 2 * kPid, 20, 1e-13);
-  }
+  double outside(int i) const override { return technique(i) == StudyTechnique::kLobe ? disk_.below() : 0; }
 
   // f^2/p_1 dwi = f^2 (dwi/d(r^2) dpsi)^2 2 pi e^E: with y = E_max - E, e^E_max times a plain integral over y.
   double logSecondMomentAtEdge(int i) const override {
     if (technique(i) != StudyTechnique::kLobe || !input_.joint || !(input_.rhoD > 0)) return kNaN;
-    const auto peak = [this](double psi) { return square(ringAt(psi).rMax); };
+    const auto peak = [this](double psi) { return square(disk_.ringAt(psi).rMax); };
     double top = 0;
     for (int k = 0; k < 720; ++k) top = std::max(top, peak(k * kPid / 360));
     if (top < 30) return kNaN;
     boost::math::quadrature::tanh_sinh<double> quadrature(10);
     const auto rest = [&](double psi) {
-      const Ring ring = ringAt(psi);
+      const SlopeDisk::Ring ring = disk_.ringAt(psi);
       const double eMax = square(ring.rMax);
       return quadrature.integrate(
           [&](double y) {
             const double r = std::sqrt(std::max(0.0, eMax - y));
-            const Slope s = slopeAt(ring, r, y / (ring.rMax + r));
+            const Slope s = disk_.slopeAt(ring, r, y / (ring.rMax + r));
             if (!(s.ci > 0)) return 0.0;
             const double f = at(s, 1).f;
             return std::exp(-y) * square(f * s.perSlope) * (kPid / 2);
@@ -198,56 +189,18 @@ class WardFull final : public Case {
 
   void sample(int i, Stream& random, SampleBlock& block, size_t first, size_t last) const override {
     const StudyTechnique t = technique(i);
-    const double invAx = 1 / ax_, invAy = 1 / ay_;
+    const Vec3<double> wo = disk_.wo();
+    const double ax = input_.alphaX, ay = input_.alphaY, invAx = 1 / ax, invAy = 1 / ay;
     for (size_t j = first; j < last; ++j) {
       const Vec3<double> wi =
-          t == StudyTechnique::kLobe ? wardSample(wo_, ax_, ay_, random.square()) : sampleHemisphere(t, random);
-      const WardValue<double> w = wardEvaluate(variant_, wi, wo_, invAx, invAy);
+          t == StudyTechnique::kLobe ? wardSample(wo, ax, ay, random.square()) : sampleHemisphere(t, random);
+      const WardValue<double> w = wardEvaluate(variant_, wi, wo, invAx, invAy);
       set(block, j, wi.z, w.fCos, w.pdf);
     }
   }
 
  private:
-  // Where the horizon's distance or the ellipse's radius changes fast with psi: cells that grow from there.
-  std::vector<double> breaksOf(double turn) const {
-    std::vector<double> breaks{0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1};
-    const auto grade = [&](double psi, double width) {
-      for (double w = width; w < 0.4; w *= 4)
-        for (double side : {-w, w})
-          for (double period : {-2 * kPid, 0.0, 2 * kPid})
-            if (const double v = (psi + side + period) / turn; v > 0 && v < 1) breaks.push_back(v);
-    };
-    for (double half : {0.0, kPid}) {
-      const double across = std::atan2(-ax_ * cosPhi_, ay_ * sinPhi_) + half;  // of the plane of incidence
-      grade(across,
-            square(std::hypot(ax_ * std::cos(across), ay_ * std::sin(across))) / (ax_ * ay_ * std::max(1.0, tan_)));
-      if (!isotropic_) grade(ax_ < ay_ ? half : half + kPid / 2, std::min(ax_, ay_) / std::max(ax_, ay_));
-    }
-    std::sort(breaks.begin(), breaks.end());
-    return breaks;
-  }
-
-  // A direction psi: its slope per r, and where the horizon lies.
-  struct Ring {
-    double g, rhoMax, rMax;
-  };
-  // perSlope: dwi = perSlope r dr dpsi
-  struct Slope {
-    double e, slope, ci, hz, perSlope;  // e = E here
-  };
-  Ring ringAt(double psi) const {
-    const double x = ax_ * std::cos(psi), y = ay_ * std::sin(psi), g = std::hypot(x, y);
-    const double cosine = (x * cosPhi_ + y * sinPhi_) / g, t = tan_ * cosine, root = std::sqrt(t * t + 1);
-    const double rhoMax = t >= 0 ? t + root : 1 / (root - t);
-    return {g, rhoMax, rhoMax / g};
-  }
-  // left = rMax - r, given apart since it may be tiny
-  Slope slopeAt(const Ring& ring, double r, double left) const {
-    const double rho = ring.g * r, slope = 1 + rho * rho;
-    const double ci = co_ * (ring.g * left) * (rho + 1 / ring.rhoMax) / slope;
-    const double hz = ci + co_;
-    return {r * r, slope, ci, hz, 2 * hz / slope * ax_ * ay_};
-  }
+  using Slope = SlopeDisk::Slope;
   Point at(const Slope& s, double measure) const {
     const double logP = logK_ + std::log(0.5 * s.slope / s.hz) - s.e;
     const WardHalf<double> half(std::exp(logK_ - s.e), s.slope, s.hz);
@@ -262,9 +215,8 @@ class WardFull final : public Case {
   }
 
   WardVariant variant_;
-  bool isotropic_;
-  double cosPhi_, sinPhi_, ax_, ay_, tan_, logK_;
-  Vec3<double> wo_;
+  SlopeDisk disk_;
+  double logK_;
 };
 
 class PhongFull final : public Case {
@@ -337,7 +289,7 @@ class PhongFull final : public Case {
 class WardPlanar final : public Case {
  public:
   explicit WardPlanar(const StudyInput& input)
-      : Case(input), variant_(static_cast<WardVariant>(static_cast<int>(input.brdf) - 1)), alpha_(input.alphaX) {
+      : Case(input), variant_(wardVariant(input.brdf)), alpha_(input.alphaX) {
     const double half = input.thetaO * (kPid / 360);
     t0_ = -std::tan(half);
     t1_ = co_ / (1 + so_);  // tan(45 - theta_o/2)

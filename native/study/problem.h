@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 
+#include "bsdf/ward.h"
 #include "math/random.h"
 #include "math/vec.h"
 #include "mis/points.h"
@@ -54,5 +55,7 @@ class Problem {
 };
 
 std::unique_ptr<Problem> makeProblem(const StudyInput& input);
+
+constexpr WardVariant wardVariant(StudyBrdf b) { return static_cast<WardVariant>(static_cast<int>(b) - 1); }
 
 }  // namespace wardmis
