@@ -14,8 +14,12 @@ struct Surface {
 
   bool hasDiffuse() const { return maxComponent(diffuse) > 0; }
   bool hasSpecular() const { return maxComponent(specular) > 0; }
-  // Below this alpha the rounding of float directions shows in E, and the lobe is evaluated in double (docs/theory.md).
-  bool needsDouble() const { return std::min(ax, ay) < 2e-3f; }
+  // Where the rounding of float directions shows in E, and the lobe is evaluated in double: a slope is rounded by 6e-8/h_z, at
+  // grazing angles h_z is about alpha/(1 + |s|^2), and the narrower alpha is what that is to be small against.
+  bool needsDouble() const {
+    const float narrow = std::min(ax, ay), wide = std::max(ax, ay);
+    return narrow * narrow < 4e-6f * (1 + wide * wide);
+  }
 };
 
 // f_s cos (rho_s = 1) and the lobe's pdf at one direction.

@@ -32,10 +32,9 @@ struct WardHalf {
   T e, slope, hz;
 
   WardHalf(T ke, T onePlusSlope2, T hSum) : e(ke), slope(onePlusSlope2), hz(hSum) {}
-  WardHalf(Vec3<T> wi, Vec3<T> wo, T invAx, T invAy) {
+  WardHalf(Vec3<T> wi, Vec3<T> wo, T invAx, T invAy) {  // callers see to wi.z > 0 and wo.z > 0
     const Vec3<T> h = wi + wo;
-    const T inv = T(1) / h.z;  // callers see to wi.z > 0 and wo.z > 0
-    const T sx = h.x * inv, sy = h.y * inv;
+    const T sx = h.x / h.z, sy = h.y / h.z;  // not times 1/h.z, which is infinite at denormal cosines
     const T big = T(1e30f);  // e underflows to 0 long before, and 0 * big is 0 where 0 * infinity is not
     const T s2 = sx * sx + sy * sy;
     slope = T(1) + (s2 < big ? s2 : big);
@@ -48,11 +47,11 @@ struct WardHalf {
   template <WardVariant V>
   T fCos(T ci, T co) const {
     if constexpr (V == WardVariant::kWard)
-      return T(0.25) * e * std::sqrt(ci) / std::sqrt(co);  // K/4 e^-E / sqrt(ci co)
+      return T(0.25) * e * (std::sqrt(ci) / std::sqrt(co));  // K/4 e^-E / sqrt(ci co)
     else if constexpr (V == WardVariant::kWardDur)
       return T(0.25) * e / co;  // K/4 e^-E / (ci co)
     else
-      return e * slope * (ci / hz) / hz;  // K e^-E |h|^2 / h.z^4
+      return e * slope * (ci / hz / hz);  // K e^-E |h|^2 / h.z^4
   }
 };
 
@@ -103,8 +102,8 @@ inline T wardWeight(WardVariant variant, Vec3<T> wi, Vec3<T> wo) {
   const Vec3<T> h = wi + wo;
   if (variant == WardVariant::kWardGmd) return T(2) * wi.z / h.z;
   const T c = cosThetaHalf(h);  // (h.o) cos^3(theta_h) = h.z/2 c^2
-  return variant == WardVariant::kWard ? T(0.5) * h.z * c * c * (std::sqrt(wi.z) / std::sqrt(wo.z))
-                                       : T(0.5) * (h.z / wo.z) * c * c;
+  const T a = T(0.5) * c * c, root = std::sqrt(wo.z);  // by factors: no product leaves the range where the weight does not
+  return variant == WardVariant::kWard ? a * h.z * (std::sqrt(wi.z) / root) : a * (h.z / root) / root;
 }
 
 // ln of wardEvaluate().pdf, also where the density itself underflows; -infinity unless both directions are above.
