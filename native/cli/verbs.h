@@ -14,5 +14,6 @@ Verb addInfo(CLI::App& app);
 Verb addCompare(CLI::App& app);
 Verb addStudy(CLI::App& app);
 Verb addEval(CLI::App& app);
+Verb addStability(CLI::App& app);
 
 }  // namespace wardmis

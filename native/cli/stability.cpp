@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/verbs.h"
+#include "math/error.h"
+#include "study/gnuplot.h"
+#include "study/stability.h"
+
+namespace wardmis {
+
+namespace {
+
+struct Options {
+  StabilitySettings settings;
+  std::vector<std::string> variants{"ward", "ward-dur", "ward-gmd"};
+  std::string plot;
+  bool json = false;
+};
+
+int run(Options& o) {
+  if (!o.plot.empty()) checkPlotName(o.plot);
+  o.settings.variants.clear();
+  for (StudyBrdf b : {StudyBrdf::kWard, StudyBrdf::kWardDur, StudyBrdf::kWardGmd})
+    if (std::find(o.variants.begin(), o.variants.end(), name(b)) != o.variants.end()) o.settings.variants.push_back(b);
+  const StabilityReport report = runStability(stabilityGrid(o.settings), o.settings);
+  if (!o.plot.empty()) plotStability(report, o.plot);
+  if (o.json)
+    fmt::print("{}\n", stabilityJson(report).dump(2));
+  else
+    fmt::print("{}", stabilityTable(report));
+  return static_cast<int>(report.pass() ? ExitCode::kDone : ExitCode::kCheckFailed);
+}
+
+}  // namespace
+
+Verb addStability(CLI::App& app) {
+  auto o = std::make_shared<Options>();
+  app.footer("Exit code 1 where a check fails. docs/theory.md says what is checked, and against which thresholds.");
+  app.add_option("--variants", o->variants, "of ward, ward-dur, ward-gmd, with commas")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"ward", "ward-dur", "ward-gmd"}))
+      ->default_str("ward,ward-dur,ward-gmd");
+  app.add_flag("--thorough", o->settings.thorough, "ten times the work: a finer grid, more trials");
+  app.add_option("--seed", o->settings.seed, "another seed, other samples")->capture_default_str();
+  app.add_option("--threads", o->settings.threads, "0: all; the numbers do not depend on it")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  app.add_flag("--json", o->json, "everything that was measured, as one object");
+  app.add_option("--plot", o->plot, "draw heat maps over alpha and theta_o, as .svg or .png (needs gnuplot)");
+  return [o] { return run(*o); };
+}
+
+}  // namespace wardmis
