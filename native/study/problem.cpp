@@ -94,7 +94,7 @@ double logIntegralOfPeaks(const Peak& peak, const Rest& rest) {
   }
   std::vector<int> maxima;
   for (int i = 0; i < kGrid; ++i)
-    if (at(i) > at(i - 1) && at(i) >= at(i + 1) && at(i) > top - 700) maxima.push_back(i);
+    if (at(i) > at(i - 1) && at(i) >= at(i + 1) && at(i) >= top - 700) maxima.push_back(i);
   boost::math::quadrature::tanh_sinh<double> quadrature(12);
   double sum = 0, scale = -kInfinity;
   std::vector<double> exact;

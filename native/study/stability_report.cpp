@@ -290,6 +290,18 @@ json stabilityJson(const StabilityReport& report) {
           {"cells", cells}};
 }
 
+namespace {
+
+// For a cell of a heat map: two digits, whole numbers from 10, and 12k, 3M.
+std::string shortNumber(double x) {
+  if (!std::isfinite(x)) return std::isnan(x) ? "nan" : "inf";
+  if (x < 9.95) return x < 5e-3 ? "0" : fmt::format("{:.2g}", std::round(x * 100) / 100);
+  if (x < 999.5) return fmt::format("{:.0f}", x);
+  return x < 999.5e3 ? fmt::format("{:.0f}k", x / 1e3) : fmt::format("{:.0e}", x);
+}
+
+}  // namespace
+
 void plotStability(const StabilityReport& report, const std::string& path) {
   std::map<double, int> alphas, thetas;
   for (const StabilityResult& r : report.results)
@@ -301,18 +313,19 @@ void plotStability(const StabilityReport& report, const std::string& path) {
   const std::vector<StudyBrdf> variants = variantsOf(report);
   const bool few = alphas.size() <= 12;  // room for a number in each cell
 
+  // Black numbers must be legible on every colour.
   struct Map {
     const char *title, *palette, *range;
     double (*value)(const StabilityResult&);
   };
   const Map maps[] = {
-      {"largest error in float, of its bound", "defined (0 '#f7fbff', 0.5 '#9ecae1', 0.999 '#3182bd', 1 '#d62728', 1.2 '#d62728')",
-       "[0:1.2]", [](const StabilityResult& r) { return r.single.worstBounds(); }},
-      {"albedo (above 1: red)", "defined (0 '#252525', 0.999 '#f0f0f0', 1 '#fcbba1', 1.5 '#cb181d')", "[0:1.5]",
+      {"largest error in float / its bound", "defined (0 '#f7fbff', 0.999 '#6baed6', 1 '#fb6a4a', 1.2 '#fb6a4a')", "[0:1.2]",
+       [](const StabilityResult& r) { return r.single.worstBounds(); }},
+      {"albedo at rho_s = 1 (red: above 1)", "defined (0 '#bdbdbd', 0.9999 '#ffffff', 1.0001 '#fcbba1', 1.5 '#fb6a4a')", "[0:1.5]",
        [](const StabilityResult& r) { return r.lobe->albedo; }},
-      {"stiffness, log_{10}", "defined (0 '#ffffe5', 4 '#fec44f', 10 '#cc4c02', 20 '#662506')", "[0:20]",
+      {"stiffness, log10", "defined (0 '#ffffe5', 5 '#fec44f', 20 '#ec7014')", "[0:20]",
        [](const StabilityResult& r) { return r.estimators->logStiffness / kLn10; }},
-      {"checks that fail (green: none)", "defined (0 '#a1d99b', 0.49 '#a1d99b', 0.5 '#de2d26', 9 '#67000d')", "[0:9]",
+      {"checks that fail (green: none)", "defined (0 '#a1d99b', 0.49 '#a1d99b', 0.5 '#fcae91', 9 '#fb6a4a')", "[0:9]",
        [](const StabilityResult& r) { return double(std::count(r.failed.begin(), r.failed.end(), true)); }}};
   const size_t columns = std::size(maps), rows = variants.size();
 
@@ -325,26 +338,26 @@ void plotStability(const StabilityReport& report, const std::string& path) {
     for (const StabilityResult* r : ofVariant(report, variants[row])) {
       if (r->cell.axis != StabilityAxis::kGrid || !r->lobe) continue;
       script += fmt::format("{} {}", alphas[r->cell.input.alphaX], thetas[r->cell.input.thetaO]);
-      for (const Map& m : maps) script += fmt::format(" {:.3g}", m.value(*r));
+      for (const Map& m : maps) script += fmt::format(" {:.9g} {}", m.value(*r), shortNumber(m.value(*r)));
       script += "\n";
     }
     script += "END\n";
   }
   script += fmt::format(
       "set multiplot\nset datafile missing 'nan'\nset border lc rgb '#666666'\nset tics out nomirror font ',9'\nunset key\n"
-      "set xrange [-0.5:{}]\nset yrange [-0.5:{}]\nset xtics rotate by 45 right ({})\nset ytics ({})\n",
+      "set xrange [-0.5:{}]\nset yrange [-0.5:{}]\nset xtics rotate by 30 right ({})\nset ytics ({})\n",
       double(alphas.size()) - 0.5, double(thetas.size()) - 0.5, xtics, ytics);
   for (size_t row = 0; row < rows; ++row)
     for (size_t c = 0; c < columns; ++c) {
       const Map& m = maps[c];
       script += fmt::format("set origin {},{}\nset size {},{}\n", double(c) / double(columns),
                             double(rows - 1 - row) / double(rows), 1.0 / double(columns), 1.0 / double(rows));
-      script += fmt::format("set title \"{}: {}\" font ',11' offset 0,-0.5\nset xlabel 'alpha' offset 0,0.3\n"
-                            "set ylabel 'theta_o, degrees'\nset palette {}\nset cbrange {}\nset cbtics font ',8'\n",
+      script += fmt::format("set title \"{}: {}\" noenhanced font ',12' offset 0,-0.5\nset xlabel 'alpha' offset 0,0.5\n"
+                            "set ylabel 'theta_o, degrees' noenhanced offset 1.5,0\nset lmargin 9\nset rmargin 6\nset palette {}\nset cbrange {}\nset cbtics font ',8'\n",
                             name(variants[row]), m.title, m.palette, m.range);
-      script += fmt::format("plot $d{0} using 1:2:{1} with image", row, c + 3);
+      script += fmt::format("plot $d{0} using 1:2:{1} with image", row, 2 * c + 3);
       if (few)
-        script += fmt::format(", $d{0} using 1:2:(sprintf('%.2g', ${1})) with labels font ',8' textcolor rgb '#000000'", row, c + 3);
+        script += fmt::format(", $d{} using 1:2:{} with labels font ',8' noenhanced", row, 2 * c + 4);
       script += "\n";
     }
   script += "unset multiplot\n";
