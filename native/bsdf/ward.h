@@ -102,7 +102,8 @@ inline T wardWeight(WardVariant variant, Vec3<T> wi, Vec3<T> wo) {
   const Vec3<T> h = wi + wo;
   if (variant == WardVariant::kWardGmd) return T(2) * wi.z / h.z;
   const T c = cosThetaHalf(h);  // (h.o) cos^3(theta_h) = h.z/2 c^2
-  const T a = T(0.5) * c * c, root = std::sqrt(wo.z);  // by factors: no product leaves the range where the weight does not
+  const T a = T(0.5) * c * c,
+          root = std::sqrt(wo.z);  // by factors: no product leaves the range where the weight does not
   return variant == WardVariant::kWard ? a * h.z * (std::sqrt(wi.z) / root) : a * (h.z / root) / root;
 }
 

@@ -55,7 +55,8 @@ int main(int argc, char** argv) {
       add("info", "what a scene holds, needs, and leaves out", wardmis::addInfo),
       add("compare", "the error of an image against a reference", wardmis::addCompare),
       add("study", "the paper's estimators at one shading point: exactly, and by trials", wardmis::addStudy),
-      add("stability", "stiff and extreme cases of the numbers, each judged by stated thresholds", wardmis::addStability),
+      add("stability", "stiff and extreme cases of the numbers, each judged by stated thresholds",
+          wardmis::addStability),
       add("eval", "f, pdf, log pdf and sampling weight of a BRDF, a line each", wardmis::addEval),
   };
 

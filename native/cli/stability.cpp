@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/stability.h"
+
 #include <fmt/format.h>
 
 #include <memory>
@@ -7,7 +9,6 @@
 #include "cli/verbs.h"
 #include "math/error.h"
 #include "study/gnuplot.h"
-#include "study/stability.h"
 
 namespace wardmis {
 

@@ -57,8 +57,10 @@ class LogSum {
  public:
   void add(double weight, double x) {
     if (!(weight > 0) || x == -kInfinity) return;  // a value that is not a number stays one
-    if (!(x <= scale_)) sum_ = sum_ * std::exp(scale_ - x) + weight, scale_ = x;
-    else sum_ += weight * std::exp(x - scale_);
+    if (!(x <= scale_))
+      sum_ = sum_ * std::exp(scale_ - x) + weight, scale_ = x;
+    else
+      sum_ += weight * std::exp(x - scale_);
   }
   double log() const { return sum_ == 0 ? -kInfinity : scale_ + std::log(sum_); }
 

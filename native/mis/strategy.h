@@ -55,9 +55,10 @@ Densities fractions(Allocation, const IntegrandMoments&, const Densities* cost =
 // The same from points, for every allocation.
 Densities fractions(Allocation, const Points&, const IntegrandMoments&, const Densities* cost = nullptr);
 
-// w_i f/p_i, for weights that are functions of a and p (all but kOptimal); v: of kVarianceAware. Finite where w_i/p_i is not:
-// at a lobe's end f and the densities underflow together.
-double weightedValue(Weights, int i, int techniques, double f, const Densities& p, const Densities& a, const Densities& v);
+// w_i f/p_i, for weights that are functions of a and p (all but kOptimal); v: of kVarianceAware. Finite where w_i/p_i
+// is not: at a lobe's end f and the densities underflow together.
+double weightedValue(Weights, int i, int techniques, double f, const Densities& p, const Densities& a,
+                     const Densities& v);
 Densities varianceAwareFactors(const IntegrandMoments&);
 
 // tau of the optimal weights: F = sum_i tau_i + 1/N sum_ij (f - sum_k tau_k p_k)/q (X_ij).

@@ -50,8 +50,8 @@ DecodedImage rawImage(std::span<const std::byte> data, RawLayout layout, ColorSp
   const size_t values = size_t(layout.width) * layout.height * layout.channels;
   const size_t size = values * (layout.floats ? sizeof(float) : 1);
   if (data.size() != size)
-    throw UnreadableImage(fmt::format("{} x {} pixels of {} channels need {} bytes, found {}", layout.width, layout.height,
-                                 layout.channels, size, data.size()));
+    throw UnreadableImage(fmt::format("{} x {} pixels of {} channels need {} bytes, found {}", layout.width,
+                                      layout.height, layout.channels, size, data.size()));
   if (!budget.take(size)) throw UnreadableImage("is one of too many images with the same data");
   Image image;
   image.width = layout.width;

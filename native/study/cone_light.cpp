@@ -73,8 +73,8 @@ class ConeLight final : public Problem {
  private:
   bool isLight(size_t k) const { return input_.techniques[k] == StudyTechnique::kUniform; }
 
-  // A direction in the frame of the axis. In long double: in a lobe of 1e-6 double's rounding of it is above the quadrature's
-  // tolerance.
+  // A direction in the frame of the axis. In long double: in a lobe of 1e-6 double's rounding of it is above the
+  // quadrature's tolerance.
   Point at(Vec3<Extended> local, bool lit) const {
     const Vec3<Extended> x{frame_.x.x, frame_.x.y, frame_.x.z}, y{frame_.y.x, frame_.y.y, frame_.y.z},
         z{frame_.z.x, frame_.z.y, frame_.z.z}, wo{wo_.x, wo_.y, wo_.z};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A light of any size: Ward's lobe under a cone of uniform radiance R about the mirror direction, sampled as the renderer
-// samples suns and spheres (toCone). Techniques: those of the input, where `uniform` is the light, uniform in the cone.
+// A light of any size: Ward's lobe under a cone of uniform radiance R about the mirror direction, sampled as the
+// renderer samples suns and spheres (toCone). Techniques: those of the input, where `uniform` is the light, uniform in
+// the cone.
 #pragma once
 
 #include "study/problem.h"

@@ -135,8 +135,8 @@ class WardFull final : public Case {
         disk_(input.alphaX, input.alphaY, input.thetaO, input.phiO),
         logK_(-std::log(kPid * input.alphaX * input.alphaY)) {}
 
-  // Polar coordinates of the slope disk, in two parts: the lobe, out to r = 12 (or, smoothly, to where the horizon comes
-  // first), and from there on all scales evenly, r = sinh(c).
+  // Polar coordinates of the slope disk, in two parts: the lobe, out to r = 12 (or, smoothly, to where the horizon
+  // comes first), and from there on all scales evenly, r = sinh(c).
   std::vector<Chart> charts() const override {
     const double turn = disk_.isotropic() ? kPid : 2 * kPid, fold = disk_.isotropic() ? 2 : 1;
     const auto lobeEnd = [](const SlopeDisk::Ring& ring) {
@@ -288,8 +288,7 @@ class PhongFull final : public Case {
 // In t = tan((theta_i - theta_o)/2), E = t^2/alpha^2, from theta_i = 0 to 90 degrees; t = alpha sinh(s).
 class WardPlanar final : public Case {
  public:
-  explicit WardPlanar(const StudyInput& input)
-      : Case(input), variant_(wardVariant(input.brdf)), alpha_(input.alphaX) {
+  explicit WardPlanar(const StudyInput& input) : Case(input), variant_(wardVariant(input.brdf)), alpha_(input.alphaX) {
     const double half = input.thetaO * (kPid / 360);
     t0_ = -std::tan(half);
     t1_ = co_ / (1 + so_);  // tan(45 - theta_o/2)

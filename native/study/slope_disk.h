@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ward's lobe in polar coordinates of the microfacet's slope, in units of alpha: s = r (ax cos psi, ay sin psi), E = r^2.
-// The directions above the surface are those out to the horizon, the circle |s - tan(theta_o) o| = 1/cos(theta_o), and
-// dwi = 2 h_z/(1 + |s|^2) d^2s.
+// Ward's lobe in polar coordinates of the microfacet's slope, in units of alpha: s = r (ax cos psi, ay sin psi), E =
+// r^2. The directions above the surface are those out to the horizon, the circle |s - tan(theta_o) o| = 1/cos(theta_o),
+// and dwi = 2 h_z/(1 + |s|^2) d^2s.
 #pragma once
 
 #include <algorithm>
@@ -46,8 +46,8 @@ class SlopeDisk {
     return {r * r, slope, ci, hz, 2 * hz / slope * ax_ * ay_};
   }
 
-  // Probability that a sample of the lobe lies below the horizon. Between the breaks: over the whole turn, the quadrature would
-  // miss what happens within 1e-5 of it.
+  // Probability that a sample of the lobe lies below the horizon. Between the breaks: over the whole turn, the
+  // quadrature would miss what happens within 1e-5 of it.
   double below() const {
     constexpr double turn = 2 * kPi<double>;
     const std::vector<double> v = breaks(turn);
@@ -58,8 +58,8 @@ class SlopeDisk {
     return sum;
   }
 
-  // In psi/turn, between the first cells of a quadrature: cells that grow from where the horizon's distance or the ellipse's
-  // radius changes fast with psi.
+  // In psi/turn, between the first cells of a quadrature: cells that grow from where the horizon's distance or the
+  // ellipse's radius changes fast with psi.
   std::vector<double> breaks(double turn) const {
     constexpr double pi = kPi<double>;
     std::vector<double> breaks{0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1};

@@ -100,8 +100,10 @@ void judge(StabilityResult& r, const StabilityReport& report) {
     const LobeReport& l = *r.lobe;
     verdict(Check::kDensity, std::abs(l.mass - (1 - l.below)) <= threshold::kDensity);
     verdict(Check::kChiSquare, std::min(l.pSingle, l.pDouble) >= report.chiSquareThreshold);
-    verdict(Check::kWeight, gmd ? l.largestWeight <= threshold::kWeightGmd * (1 + 8 * 0x1p-23) : std::isfinite(l.largestWeight));
-    verdict(Check::kAlbedo, gmd ? l.albedo >= 0 && l.albedo <= threshold::kAlbedoGmd : l.albedo >= 0 && std::isfinite(l.albedo));
+    verdict(Check::kWeight,
+            gmd ? l.largestWeight <= threshold::kWeightGmd * (1 + 8 * 0x1p-23) : std::isfinite(l.largestWeight));
+    verdict(Check::kAlbedo,
+            gmd ? l.albedo >= 0 && l.albedo <= threshold::kAlbedoGmd : l.albedo >= 0 && std::isfinite(l.albedo));
   }
   if (r.estimators) {
     bool sound = true, biased = false, any = false;
@@ -133,25 +135,30 @@ std::vector<StabilityCell> stabilityGrid(const StabilitySettings& settings) {
     };
     // N, the longest first
     for (double n : {1048576.0, 65536.0, 4096.0, 256.0, 16.0, 4.0, 3.0, 2.0})
-      for (auto [alpha, theta] : more ? std::vector<std::pair<double, double>>{{0.1, 60}, {0.01, 85}, {0.3, 89.9}, {1e-4, 30}, {3, 0}}
-                                      : std::vector<std::pair<double, double>>{{0.1, 60}})
+      for (const std::pair<double, double>& place :
+           more ? std::vector<std::pair<double, double>>{{0.1, 60}, {0.01, 85}, {0.3, 89.9}, {1e-4, 30}, {3, 0}}
+                : std::vector<std::pair<double, double>>{{0.1, 60}})
         add(StabilityAxis::kSamples, [&](StabilityCell& c) {
-          c.input.alphaX = c.input.alphaY = alpha, c.input.thetaO = theta;
+          c.input.alphaX = c.input.alphaY = place.first, c.input.thetaO = place.second;
           c.samples = int(n), c.trials = std::clamp(int(262144 / n), 2, 2000);
         });
     for (double alpha : alphas(more))
       for (double theta : thetas(more))
-        add(StabilityAxis::kGrid, [&](StabilityCell& c) { c.input.alphaX = c.input.alphaY = alpha, c.input.thetaO = theta; });
+        add(StabilityAxis::kGrid,
+            [&](StabilityCell& c) { c.input.alphaX = c.input.alphaY = alpha, c.input.thetaO = theta; });
     // anisotropy 1:10 to 1:1000, both ways about
     for (double ratio : more ? std::vector<double>{10, 30, 100, 300, 1000} : std::vector<double>{10, 1000})
-      for (double alpha : more ? std::vector<double>{1e-6, 1e-5, 1e-4, 1e-3, 1e-2} : std::vector<double>{1e-6, 1e-4, 1e-2})
-        for (double theta : more ? std::vector<double>{0, 60, 85, 89, 89.99, 89.9999} : std::vector<double>{60, 89.9999})
+      for (double alpha :
+           more ? std::vector<double>{1e-6, 1e-5, 1e-4, 1e-3, 1e-2} : std::vector<double>{1e-6, 1e-4, 1e-2})
+        for (double theta :
+             more ? std::vector<double>{0, 60, 85, 89, 89.99, 89.9999} : std::vector<double>{60, 89.9999})
           for (double phi : more ? std::vector<double>{0, 37, 90} : std::vector<double>{0, 37})
             add(StabilityAxis::kAnisotropy, [&](StabilityCell& c) {
               c.input.alphaX = alpha, c.input.alphaY = alpha * ratio, c.input.thetaO = theta, c.input.phiO = phi;
             });
     // rho_d + rho_s = 1, as one integrand
-    for (double rhoS : more ? std::vector<double>{1, 0.999, 0.9, 0.5, 0.1, 0.001, 1e-6} : std::vector<double>{0.999, 0.5, 0.001})
+    for (double rhoS :
+         more ? std::vector<double>{1, 0.999, 0.9, 0.5, 0.1, 0.001, 1e-6} : std::vector<double>{0.999, 0.5, 0.001})
       for (double alpha : more ? geometric(1e-6, 10, 7) : std::vector<double>{1e-6, 1e-2, 1})
         for (double theta : more ? std::vector<double>{0, 60, 80, 89, 89.9999} : std::vector<double>{0, 80, 89.9999})
           add(StabilityAxis::kEnergy, [&](StabilityCell& c) {

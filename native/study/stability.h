@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether the numbers hold in stiff and extreme cases: a sweep over alpha, theta_o, anisotropy, rho, light size, radiance,
-// N and grazing directions, each cell with checks that pass or fail by the thresholds below (docs/theory.md says why these).
-// Stiffness of a cell is the ratio of its largest to its smallest technique second moment.
+// Whether the numbers hold in stiff and extreme cases: a sweep over alpha, theta_o, anisotropy, rho, light size,
+// radiance, N and grazing directions, each cell with checks that pass or fail by the thresholds below (docs/theory.md
+// says why these). Stiffness of a cell is the ratio of its largest to its smallest technique second moment.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -17,22 +17,22 @@ namespace wardmis {
 enum class StabilityAxis : uint8_t { kGrid, kAnisotropy, kEnergy, kLight, kSamples, kGrazing };
 
 enum class StabilityCheck : uint8_t {
-  kSpecial,      // no NaN, negative value, or infinity where the exact value is finite
-  kErrorFloat,   // f, pdf and weight against long double, in units of their bound
+  kSpecial,     // no NaN, negative value, or infinity where the exact value is finite
+  kErrorFloat,  // f, pdf and weight against long double, in units of their bound
   kErrorDouble,
-  kDensity,      // the pdf's integral over the hemisphere against 1 - P_below
-  kChiSquare,    // the sampler against the pdf
-  kWeight,       // largest sampling weight: at most 2 for ward-gmd, finite for all
-  kAlbedo,       // at most 1 for ward-gmd; shown for the others
-  kPrediction,   // fractions sum to 1, N Var finite and not negative
-  kBias,         // mean of the trials against the integral
+  kDensity,     // the pdf's integral over the hemisphere against 1 - P_below
+  kChiSquare,   // the sampler against the pdf
+  kWeight,      // largest sampling weight: at most 2 for ward-gmd, finite for all
+  kAlbedo,      // at most 1 for ward-gmd; shown for the others
+  kPrediction,  // fractions sum to 1, N Var finite and not negative
+  kBias,        // mean of the trials against the integral
 };
 inline constexpr int kStabilityChecks = 9;
 
 namespace threshold {
-inline constexpr double kBound = 1;          // errors, in units of (12 + 8E) eps
-inline constexpr double kDensity = 1e-9;     // absolute
-inline constexpr double kWeightGmd = 2;      // times 1 + 8 eps
+inline constexpr double kBound = 1;       // errors, in units of (12 + 8E) eps
+inline constexpr double kDensity = 1e-9;  // absolute
+inline constexpr double kWeightGmd = 2;   // times 1 + 8 eps
 inline constexpr double kAlbedoGmd = 1 + 1e-9;
 inline constexpr double kFalseAlarms = 1e-3;  // of all chi-square tests together, and of all bias tests together
 }  // namespace threshold
@@ -43,13 +43,13 @@ struct StabilityCell {
   double lightAngle = 0;  // half angle of the cone light, radians; 0: the sky R cos(theta)
   double cosO = -1;       // grazing cells: cos(theta_o) as given; no integral there
   int samples = 64, trials = 400;
-  int sampler = 20000;    // samples of the chi-square test
+  int sampler = 20000;  // samples of the chi-square test
 };
 
 struct StabilityResult {
   StabilityCell cell;
-  NumberErrors single, twice;             // float, double
-  std::optional<LobeReport> lobe;         // none in grazing cells
+  NumberErrors single, twice;      // float, double
+  std::optional<LobeReport> lobe;  // none in grazing cells
   std::optional<EstimatorReport> estimators;
   std::array<bool, kStabilityChecks> checked{}, failed{};
 

@@ -69,7 +69,8 @@ EstimatorReport measureEstimators(const Problem& problem, int samples, int trial
     s.equalCounts = equal && run.strategy->allocation != Allocation::kEqual;
     if (run.strategy->knowledge == Knowledge::kPilot)
       s.equalCounts = *std::max_element(run.counts.begin(), run.counts.begin() + n) -
-                          *std::min_element(run.counts.begin(), run.counts.begin() + n) <= 1;
+                          *std::min_element(run.counts.begin(), run.counts.begin() + n) <=
+                      1;
     s.biased = run.strategy->knowledge == Knowledge::kDirect;
     s.variance = run.estimate.variance();
     const bool given = run.strategy->knowledge == Knowledge::kGiven;
@@ -85,8 +86,8 @@ EstimatorReport measureEstimators(const Problem& problem, int samples, int trial
       s.events = std::min(s.events, eventsOf(*run.strategy, exact, counts, samples, trials));
       s.events = std::min(s.events, hits);
     }
-    const bool enough = s.events >= (given ? kEventsGiven : kEventsOwn) &&
-                        (given || run.estimate.varianceError() < 0.15 * s.variance);
+    const bool enough =
+        s.events >= (given ? kEventsGiven : kEventsOwn) && (given || run.estimate.varianceError() < 0.15 * s.variance);
     // the larger of the two standard errors: rare events make the measured one too small more often than too large
     double error = run.estimate.error();
     if (run.predictedVariance) error = std::max(error, std::sqrt(*run.predictedVariance / trials));

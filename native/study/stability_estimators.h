@@ -9,15 +9,15 @@ namespace wardmis {
 struct StrategyReport {
   const Strategy* strategy = nullptr;
   Densities fractions{};
-  bool sound = true;        // fractions sum to 1; N Var is finite and not negative
-  bool equalCounts = false; // though it is no strategy of equal counts
-  double logVariance = 0;   // ln(N Var)
-  double z = 0;             // of the mean; NaN where it is not measurable
-  // About how many events the trials' variance rests on (one over the mean's kurtosis): few where a technique meets what
-  // it is to find in one of thousands of trials. The mean then says nothing, and is not judged.
+  bool sound = true;         // fractions sum to 1; N Var is finite and not negative
+  bool equalCounts = false;  // though it is no strategy of equal counts
+  double logVariance = 0;    // ln(N Var)
+  double z = 0;              // of the mean; NaN where it is not measurable
+  // About how many events the trials' variance rests on (one over the mean's kurtosis): few where a technique meets
+  // what it is to find in one of thousands of trials. The mean then says nothing, and is not judged.
   double events = 0;
   double variance = 0;
-  bool biased = false;      // by O(1/N), as its source says: not judged
+  bool biased = false;  // by O(1/N), as its source says: not judged
   bool measurable() const { return z == z; }
 };
 
@@ -29,8 +29,8 @@ struct EstimatorReport {
   std::vector<StrategyReport> strategies;
 };
 
-// Means are judged where their variance rests on at least so many events: of strategies whose variance is predicted, and of
-// those that learn from their samples, of which every technique must also meet the light so often.
+// Means are judged where their variance rests on at least so many events: of strategies whose variance is predicted,
+// and of those that learn from their samples, of which every technique must also meet the light so often.
 inline constexpr double kEventsGiven = 100, kEventsOwn = 2000;
 
 EstimatorReport measureEstimators(const Problem& problem, int samples, int trials, uint64_t seed);

@@ -15,11 +15,12 @@ using Extended = long double;
 SlopeDisk diskOf(const StudyInput& in) { return SlopeDisk(in.alphaX, in.alphaY, in.thetaO, in.phiO); }
 
 // wi of a slope. Its z comes from the distance to the horizon, where the reflection formula cancels.
-Vec3<Extended> directionAt(const SlopeDisk& disk, const StudyInput& in, const SlopeDisk::Ring& ring, double r, double psi,
-                           double left, double& perSlope) {
+Vec3<Extended> directionAt(const SlopeDisk& disk, const StudyInput& in, const SlopeDisk::Ring& ring, double r,
+                           double psi, double left, double& perSlope) {
   const SlopeDisk::Slope s = disk.slopeAt(ring, r, left);
   perSlope = s.perSlope;
-  const Extended sx = Extended(in.alphaX) * r * std::cos(Extended(psi)), sy = Extended(in.alphaY) * r * std::sin(Extended(psi));
+  const Extended sx = Extended(in.alphaX) * r * std::cos(Extended(psi)),
+                 sy = Extended(in.alphaY) * r * std::sin(Extended(psi));
   const Vec3<double> wo = disk.wo();
   const Extended hz = Extended(s.ci) + wo.z;
   return {hz * sx - wo.x, hz * sy - wo.y, s.ci};
@@ -88,7 +89,8 @@ double chiSquareOfLobe(const WardFunctions<T>& tested, const WardFunctions<Exten
   std::vector<double> observed(kSide * kSide, 0), expected(kSide * kSide, 0);
   double observedBelow = 0;
   for (int i = 0; i < count; ++i) {
-    const double u = std::floor(random.uniform() * 0x1p24) * 0x1p-24, v = std::floor(random.uniform() * 0x1p24) * 0x1p-24;
+    const double u = std::floor(random.uniform() * 0x1p24) * 0x1p-24,
+                 v = std::floor(random.uniform() * 0x1p24) * 0x1p-24;
     const Vec3<T> wi = tested.sample(wo, T(input.alphaX), T(input.alphaY), {T(u), T(v)});
     if (!(wi.z > 0)) {
       ++observedBelow;
@@ -144,8 +146,8 @@ double chiSquareOfLobe(const WardFunctions<T>& tested, const WardFunctions<Exten
   return boost::math::cdf(boost::math::complement(boost::math::chi_squared(std::max(1, cells - 1)), statistic));
 }
 
-template double chiSquareOfLobe(const WardFunctions<float>&, const WardFunctions<Extended>&, const StudyInput&, int, Stream,
-                                double&);
+template double chiSquareOfLobe(const WardFunctions<float>&, const WardFunctions<Extended>&, const StudyInput&, int,
+                                Stream, double&);
 template double chiSquareOfLobe(const WardFunctions<double>&, const WardFunctions<Extended>&, const StudyInput&, int,
                                 Stream, double&);
 

@@ -15,20 +15,20 @@ struct LobeReport {
   double largestWeight = 0;  // of the samples
   double pSingle = 1;        // chi-square p-value in float; 1 where the renderer samples in double
   double pDouble = 1;
-  bool single = false;       // whether the float sampler is in use for this lobe
+  bool single = false;  // whether the float sampler is in use for this lobe
 };
 
 // The integrals of the functions `tested`, by quadrature in the plane of slopes.
 void integrateLobe(const WardFunctions<long double>& tested, const StudyInput& input, LobeReport& report);
 
-// The largest weight and the p-value of `count` samples: their (e^-E, psi) counted in 16 x 16 cells, of which the density
-// predicts the counts.
+// The largest weight and the p-value of `count` samples: their (e^-E, psi) counted in 16 x 16 cells, of which the
+// density predicts the counts.
 template <class T>
-double chiSquareOfLobe(const WardFunctions<T>& tested, const WardFunctions<long double>& density, const StudyInput& input,
-                       int count, Stream random, double& largestWeight);
+double chiSquareOfLobe(const WardFunctions<T>& tested, const WardFunctions<long double>& density,
+                       const StudyInput& input, int count, Stream random, double& largestWeight);
 
-extern template double chiSquareOfLobe(const WardFunctions<float>&, const WardFunctions<long double>&, const StudyInput&,
-                                       int, Stream, double&);
+extern template double chiSquareOfLobe(const WardFunctions<float>&, const WardFunctions<long double>&,
+                                       const StudyInput&, int, Stream, double&);
 extern template double chiSquareOfLobe(const WardFunctions<double>&, const WardFunctions<long double>&,
                                        const StudyInput&, int, Stream, double&);
 

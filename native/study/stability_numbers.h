@@ -28,8 +28,8 @@ struct WardFunctions {
 
 struct NumberErrors {
   uint64_t values = 0, nan = 0, infinite = 0, negative = 0;  // infinite: where the exact value is finite
-  // Right, and counted all the same: zero or denormal where the exact value is smaller than a normal number, or e^-E is;
-  // infinite where it is larger than the largest.
+  // Right, and counted all the same: zero or denormal where the exact value is smaller than a normal number, or e^-E
+  // is; infinite where it is larger than the largest.
   uint64_t underflow = 0, overflow = 0;
   // The largest error of f, pdf, weight: relative, where nothing underflows, and in units of its bound, everywhere.
   std::array<double, 3> relative{}, bounds{};
@@ -43,7 +43,9 @@ template <class T>
 NumberErrors measureErrors(const WardFunctions<T>& tested, WardVariant variant, Vec3<double> wo, double ax, double ay,
                            int count, Stream random);
 
-extern template NumberErrors measureErrors(const WardFunctions<float>&, WardVariant, Vec3<double>, double, double, int, Stream);
-extern template NumberErrors measureErrors(const WardFunctions<double>&, WardVariant, Vec3<double>, double, double, int, Stream);
+extern template NumberErrors measureErrors(const WardFunctions<float>&, WardVariant, Vec3<double>, double, double, int,
+                                           Stream);
+extern template NumberErrors measureErrors(const WardFunctions<double>&, WardVariant, Vec3<double>, double, double, int,
+                                           Stream);
 
 }  // namespace wardmis

@@ -128,8 +128,8 @@ std::string variantTable(const StabilityReport& report, StudyBrdf brdf) {
     }
     if (worst == nullptr) continue;
     const Row row = rowOf(c, report, brdf == StudyBrdf::kWardGmd);
-    out += fmt::format("{:<33}{:>12} {:<17}{:>13}{:>7}{:>7}  {:<6}{}\n", row.what, value(c, measured(*worst, c)), row.unit,
-                       row.limit, checked, failed, failed == 0 ? "pass" : "FAIL",
+    out += fmt::format("{:<33}{:>12} {:<17}{:>13}{:>7}{:>7}  {:<6}{}\n", row.what, value(c, measured(*worst, c)),
+                       row.unit, row.limit, checked, failed, failed == 0 ? "pass" : "FAIL",
                        c == Check::kSpecial && failed == 0 ? "" : describe(worst->cell));
   }
   uint64_t underflow[2] = {0, 0}, overflow[2] = {0, 0}, values[2] = {0, 0};
@@ -146,8 +146,9 @@ std::string variantTable(const StabilityReport& report, StudyBrdf brdf) {
     if (r->estimators && r->estimators->logStiffness > stiffness) stiffness = r->estimators->logStiffness, stiffest = r;
   }
   for (int t = 0; t < 2; ++t)
-    out += fmt::format("in {}: {} values, {} underflowed and {} overflowed as they must; largest relative error {:.2g}\n",
-                       t == 0 ? "float" : "double", values[t], underflow[t], overflow[t], relative[t]);
+    out +=
+        fmt::format("in {}: {} values, {} underflowed and {} overflowed as they must; largest relative error {:.2g}\n",
+                    t == 0 ? "float" : "double", values[t], underflow[t], overflow[t], relative[t]);
   if (brdf != StudyBrdf::kWardGmd) out += fmt::format("albedo above 1, as this variant has it, in {} cells\n", above);
   if (stiffest != nullptr)
     out += fmt::format("stiffest: second moments apart by 1e{:.0f}, {}\n", stiffness / kLn10, describe(stiffest->cell));
@@ -168,19 +169,20 @@ std::string strategyTable(const StabilityReport& report) {
     for (const StrategyReport& s : r.estimators->strategies) {
       Line& line = lines[static_cast<size_t>(s.strategy - strategies().data())].second;
       ++line.cells, line.equal += s.equalCounts ? 1 : 0, line.biased = s.biased;
-      if (s.equalCounts && line.where.empty()) line.where = std::string(name(r.cell.input.brdf)) + " " + describe(r.cell);
+      if (s.equalCounts && line.where.empty())
+        line.where = std::string(name(r.cell.input.brdf)) + " " + describe(r.cell);
       if (!s.measurable()) continue;
       ++line.measured, line.worst = std::max(line.worst, std::abs(s.z));
       line.failed += std::abs(s.z) <= report.zThreshold ? 0 : 1;
     }
   }
-  std::string out = fmt::format("{:<28}{:>9}{:>15}{:>10}{:>8}{:>14}  {}\n", "strategy", "measured", "not measurable", "worst |z|",
-                                "failed", "equal counts", "in, for example");
+  std::string out = fmt::format("{:<28}{:>9}{:>15}{:>10}{:>8}{:>14}  {}\n", "strategy", "measured", "not measurable",
+                                "worst |z|", "failed", "equal counts", "in, for example");
   for (const auto& [strategy, line] : lines) {
     if (line.cells == 0) continue;
     const std::string z = line.biased ? "O(1/N)" : line.measured > 0 ? fmt::format("{:.2f}", line.worst) : "-";
-    out += fmt::format("{:<28}{:>9}{:>15}{:>10}{:>8}{:>14}  {}\n", strategy, line.measured, line.cells - line.measured, z,
-                       line.failed, line.equal, line.where);
+    out += fmt::format("{:<28}{:>9}{:>15}{:>10}{:>8}{:>14}  {}\n", strategy, line.measured, line.cells - line.measured,
+                       z, line.failed, line.equal, line.where);
   }
   return out;
 }
@@ -191,9 +193,14 @@ json errorsJson(const NumberErrors& e) {
   const auto three = [](const std::array<double, 3>& a) {
     return json{{"f", number(a[0])}, {"pdf", number(a[1])}, {"weight", number(a[2])}};
   };
-  return {{"values", e.values},       {"nan", e.nan},           {"infinite", e.infinite},
-          {"negative", e.negative},   {"underflow", e.underflow}, {"overflow", e.overflow},
-          {"relative_error", three(e.relative)}, {"error_over_bound", three(e.bounds)}};
+  return {{"values", e.values},
+          {"nan", e.nan},
+          {"infinite", e.infinite},
+          {"negative", e.negative},
+          {"underflow", e.underflow},
+          {"overflow", e.overflow},
+          {"relative_error", three(e.relative)},
+          {"error_over_bound", three(e.bounds)}};
 }
 
 }  // namespace
@@ -203,8 +210,10 @@ std::string stabilityTable(const StabilityReport& report) {
   for (StudyBrdf b : variantsOf(report)) out += variantTable(report, b) + "\n";
   out += strategyTable(report);
   out += fmt::format(
-      "\nNot measurable: the trials' variance rests on fewer than {:g} events ({:g} where counts follow the samples), so that a\n"
-      "technique that meets its light so rarely may have met none. False alarms: {:g} over all {} chi-square tests, and over all\n"
+      "\nNot measurable: the trials' variance rests on fewer than {:g} events ({:g} where counts follow the samples), "
+      "so that a\n"
+      "technique that meets its light so rarely may have met none. False alarms: {:g} over all {} chi-square tests, "
+      "and over all\n"
       "{} bias tests.\n",
       kEventsGiven, kEventsOwn, threshold::kFalseAlarms, report.chiSquareTests, report.biasTests);
   size_t failed = 0;
@@ -213,7 +222,8 @@ std::string stabilityTable(const StabilityReport& report) {
       out += fmt::format("failed: {} {}:", name(r.cell.input.brdf), describe(r.cell));
       for (int k = 0; k < kStabilityChecks; ++k)
         if (r.failed[at(k)])
-          out += fmt::format(" {} {}", name(static_cast<Check>(k)), value(static_cast<Check>(k), measured(r, static_cast<Check>(k))));
+          out += fmt::format(" {} {}", name(static_cast<Check>(k)),
+                             value(static_cast<Check>(k), measured(r, static_cast<Check>(k))));
       out += "\n";
     }
   if (failed > 20) out += fmt::format("and {} more\n", failed - 20);
@@ -305,7 +315,8 @@ std::string shortNumber(double x) {
 void plotStability(const StabilityReport& report, const std::string& path) {
   std::map<double, int> alphas, thetas;
   for (const StabilityResult& r : report.results)
-    if (r.cell.axis == StabilityAxis::kGrid) alphas.emplace(r.cell.input.alphaX, 0), thetas.emplace(r.cell.input.thetaO, 0);
+    if (r.cell.axis == StabilityAxis::kGrid)
+      alphas.emplace(r.cell.input.alphaX, 0), thetas.emplace(r.cell.input.thetaO, 0);
   int k = 0;
   for (auto& [alpha, index] : alphas) index = k++;
   k = 0;
@@ -319,10 +330,10 @@ void plotStability(const StabilityReport& report, const std::string& path) {
     double (*value)(const StabilityResult&);
   };
   const Map maps[] = {
-      {"largest error in float / its bound", "defined (0 '#f7fbff', 0.999 '#6baed6', 1 '#fb6a4a', 1.2 '#fb6a4a')", "[0:1.2]",
-       [](const StabilityResult& r) { return r.single.worstBounds(); }},
-      {"albedo at rho_s = 1 (red: above 1)", "defined (0 '#bdbdbd', 0.9999 '#ffffff', 1.0001 '#fcbba1', 1.5 '#fb6a4a')", "[0:1.5]",
-       [](const StabilityResult& r) { return r.lobe->albedo; }},
+      {"largest error in float / its bound", "defined (0 '#f7fbff', 0.999 '#6baed6', 1 '#fb6a4a', 1.2 '#fb6a4a')",
+       "[0:1.2]", [](const StabilityResult& r) { return r.single.worstBounds(); }},
+      {"albedo at rho_s = 1 (red: above 1)", "defined (0 '#bdbdbd', 0.9999 '#ffffff', 1.0001 '#fcbba1', 1.5 '#fb6a4a')",
+       "[0:1.5]", [](const StabilityResult& r) { return r.lobe->albedo; }},
       {"stiffness, log10", "defined (0 '#ffffe5', 5 '#fec44f', 20 '#ec7014')", "[0:20]",
        [](const StabilityResult& r) { return r.estimators->logStiffness / kLn10; }},
       {"checks that fail (green: none)", "defined (0 '#a1d99b', 0.49 '#a1d99b', 0.5 '#fcae91', 9 '#fb6a4a')", "[0:9]",
@@ -332,7 +343,8 @@ void plotStability(const StabilityReport& report, const std::string& path) {
   std::string script, xtics, ytics;
   for (const auto& [alpha, index] : alphas)
     if (few || index % 4 == 0) xtics += fmt::format("{}'{:.2g}' {}", xtics.empty() ? "" : ", ", alpha, index);
-  for (const auto& [theta, index] : thetas) ytics += fmt::format("{}'{:g}' {}", ytics.empty() ? "" : ", ", theta, index);
+  for (const auto& [theta, index] : thetas)
+    ytics += fmt::format("{}'{:g}' {}", ytics.empty() ? "" : ", ", theta, index);
   for (size_t row = 0; row < rows; ++row) {
     script += fmt::format("$d{} << END\n", row);
     for (const StabilityResult* r : ofVariant(report, variants[row])) {
@@ -344,7 +356,8 @@ void plotStability(const StabilityReport& report, const std::string& path) {
     script += "END\n";
   }
   script += fmt::format(
-      "set multiplot\nset datafile missing 'nan'\nset border lc rgb '#666666'\nset tics out nomirror font ',9'\nunset key\n"
+      "set multiplot\nset datafile missing 'nan'\nset border lc rgb '#666666'\nset tics out nomirror font ',9'\nunset "
+      "key\n"
       "set xrange [-0.5:{}]\nset yrange [-0.5:{}]\nset xtics rotate by 30 right ({})\nset ytics ({})\n",
       double(alphas.size()) - 0.5, double(thetas.size()) - 0.5, xtics, ytics);
   for (size_t row = 0; row < rows; ++row)
@@ -352,12 +365,13 @@ void plotStability(const StabilityReport& report, const std::string& path) {
       const Map& m = maps[c];
       script += fmt::format("set origin {},{}\nset size {},{}\n", double(c) / double(columns),
                             double(rows - 1 - row) / double(rows), 1.0 / double(columns), 1.0 / double(rows));
-      script += fmt::format("set title \"{}: {}\" noenhanced font ',12' offset 0,-0.5\nset xlabel 'alpha' offset 0,0.5\n"
-                            "set ylabel 'theta_o, degrees' noenhanced offset 1.5,0\nset lmargin 9\nset rmargin 6\nset palette {}\nset cbrange {}\nset cbtics font ',8'\n",
-                            name(variants[row]), m.title, m.palette, m.range);
+      script += fmt::format(
+          "set title \"{}: {}\" noenhanced font ',12' offset 0,-0.5\nset xlabel 'alpha' offset 0,0.5\n"
+          "set ylabel 'theta_o, degrees' noenhanced offset 1.5,0\nset lmargin 9\nset rmargin 6\nset palette {}\nset "
+          "cbrange {}\nset cbtics font ',8'\n",
+          name(variants[row]), m.title, m.palette, m.range);
       script += fmt::format("plot $d{0} using 1:2:{1} with image", row, 2 * c + 3);
-      if (few)
-        script += fmt::format(", $d{} using 1:2:{} with labels font ',8' noenhanced", row, 2 * c + 4);
+      if (few) script += fmt::format(", $d{} using 1:2:{} with labels font ',8' noenhanced", row, 2 * c + 4);
       script += "\n";
     }
   script += "unset multiplot\n";

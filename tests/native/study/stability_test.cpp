@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The stability check itself: a few cells of each axis pass, and each kind of defect is found by the check that is for it.
+// The stability check itself: a few cells of each axis pass, and each kind of defect is found by the check that is for
+// it.
 #include "study/stability.h"
 
 #include <gtest/gtest.h>
@@ -116,7 +117,8 @@ TEST(StabilityDefects, DigitsLostInFloat) {
 TEST(StabilityDefects, DigitsLostInDouble) {
   StabilitySubject subject;
   subject.twice.weight = [](WardVariant v, Vec3<double> wi, Vec3<double> wo) {
-    return double(wardWeight<float>(v, {float(wi.x), float(wi.y), float(wi.z)}, {float(wo.x), float(wo.y), float(wo.z)}));
+    return double(
+        wardWeight<float>(v, {float(wi.x), float(wi.y), float(wi.z)}, {float(wo.x), float(wo.y), float(wo.z)}));
   };
   EXPECT_EQ(failures(ordinary(), subject), Names{"error-double"});
 }
@@ -185,7 +187,8 @@ TEST(StabilityDefects, EstimatorThatIsBiased) {
   EXPECT_EQ(failures(c, subject), Names{"bias"});
 }
 
-// 12,800 cosine samples and a lobe of 1e-4: one in 10^8 of them meets it. A bias of 3 % of their part could not be seen.
+// 12,800 cosine samples and a lobe of 1e-4: one in 10^8 of them meets it. A bias of 3 % of their part could not be
+// seen.
 TEST(Stability, WhatCannotBeSeenIsNotJudged) {
   const StabilityReport report = runStability({cell(StabilityAxis::kGrid, StudyBrdf::kWardGmd, 1e-4, 30)}, {});
   std::map<std::string_view, const StrategyReport*> by;
