@@ -51,7 +51,7 @@ struct WardHalf {
     else if constexpr (V == WardVariant::kWardDur)
       return T(0.25) * e / co;  // K/4 e^-E / (ci co)
     else
-      return e * slope * (ci / hz / hz);  // K e^-E |h|^2 / h.z^4
+      return (e * slope / hz) * (ci / hz);  // K e^-E |h|^2 / h.z^4
   }
 };
 

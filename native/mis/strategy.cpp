@@ -411,16 +411,20 @@ Contributions contributions(Weights rule, const Densities& a, const Points& poin
     return q > 0 ? a[at(i)] * ((x.f - mixture(tau, x.p, n)) / q) : 0;
   };
   Contributions c;
+  std::vector<double> values(points.list.size());
   for (int i = 0; i < n; ++i) {
     if (!(a[at(i)] > 0)) continue;
     const double outside = points.outside[at(i)], there = rule == W::kOptimal ? -tau[at(i)] : 0;
-    const double mean =
-        points.integrate([&](const Point& x) { return x.p[at(i)] > 0 ? y(i, x) * x.p[at(i)] : 0; }) + outside * there;
+    double mean = outside * there;
+    for (size_t k = 0; k < values.size(); ++k) {
+      const Point& x = points.list[k];
+      values[k] = x.p[at(i)] > 0 ? y(i, x) : 0;
+      mean += x.w * (values[k] * x.p[at(i)]);
+    }
     double variance = outside * square(there - mean), fourth = variance * square(there - mean);
-    for (const Point& x : points.list) {
-      if (!(x.p[at(i)] > 0)) continue;
-      const double d2 = square(y(i, x) - mean), wp = x.w * x.p[at(i)];
-      variance += wp * d2, fourth += wp * d2 * d2;
+    for (size_t k = 0; k < values.size(); ++k) {
+      const double d2 = square(values[k] - mean), weighted = points.list[k].w * (d2 * points.list[k].p[at(i)]);
+      variance += weighted, fourth += weighted * d2;
     }
     c.mean[at(i)] = mean, c.variance[at(i)] = variance, c.fourth[at(i)] = fourth;
   }

@@ -54,12 +54,13 @@ NumberErrors measureErrors(const WardFunctions<T>& tested, WardVariant variant, 
   const Vec3<T> wo{T(exactWo.x), T(exactWo.y), T(exactWo.z)};
   const T tx = T(ax), ty = T(ay);
   NumberErrors errors;
+  bool beyond = false;  // the density is no T, and f_s cos need not be one either
   const auto judge = [&](size_t what, T value, Extended exact, Extended e, Extended roundings) {
     ++errors.values;
     if (std::isnan(value)) return void(++errors.nan);
     if (value < 0) return void(++errors.negative);
     // of values about the largest number, either is right
-    if (exact > largest * (1 - roundings * eps)) return void(++errors.overflow);
+    if (beyond || exact > largest * (1 - roundings * eps)) return void(++errors.overflow);
     if (std::isinf(value)) return void(++errors.infinite);
     // where e^-E or the value is denormal, an error of the smallest normal number, times what stands before e^-E
     const bool under = e > vanishing - 1 || exact < smallest;
@@ -86,8 +87,10 @@ NumberErrors measureErrors(const WardFunctions<T>& tested, WardVariant variant, 
     // a cosine so small that its share of h_z is denormal, with the digits that it then has
     const Extended share = above ? i.z / hz : 1,
                    digits = share < smallest ? Limits::denorm_min() / share / eps : Extended(0);
+    beyond = exact.pdf > largest * (1 - roundings * eps);
     judge(0, value.fCos, exact.fCos, e, roundings + digits);
     judge(1, value.pdf, exact.pdf, e, roundings);
+    beyond = false;
     // the weight is asked for at samples: where the density is a number
     if (!above || exact.pdf > smallest)
       judge(2, tested.weight(variant, wi, wo), wardWeight<Extended>(variant, i, o), 0, 8 + digits);

@@ -29,7 +29,7 @@ struct WardFunctions {
 struct NumberErrors {
   uint64_t values = 0, nan = 0, infinite = 0, negative = 0;  // infinite: where the exact value is finite
   // Right, and counted all the same: zero or denormal where the exact value is smaller than a normal number, or e^-E
-  // is; infinite where it is larger than the largest.
+  // is; infinite where it, or the density, is larger than the largest.
   uint64_t underflow = 0, overflow = 0;
   // The largest error of f, pdf, weight: relative, where nothing underflows, and in units of its bound, everywhere.
   std::array<double, 3> relative{}, bounds{};

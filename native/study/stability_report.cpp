@@ -151,7 +151,8 @@ std::string variantTable(const StabilityReport& report, StudyBrdf brdf) {
                     t == 0 ? "float" : "double", values[t], underflow[t], overflow[t], relative[t]);
   if (brdf != StudyBrdf::kWardGmd) out += fmt::format("albedo above 1, as this variant has it, in {} cells\n", above);
   if (stiffest != nullptr)
-    out += fmt::format("stiffest: second moments apart by 1e{:.0f}, {}\n", stiffness / kLn10, describe(stiffest->cell));
+    out += fmt::format("stiffest: log10 of the second moments' ratio is {:.3g}, {}\n", stiffness / kLn10,
+                       describe(stiffest->cell));
   return out;
 }
 
@@ -332,7 +333,7 @@ void plotStability(const StabilityReport& report, const std::string& path) {
   const Map maps[] = {
       {"largest error in float / its bound", "defined (0 '#f7fbff', 0.999 '#6baed6', 1 '#fb6a4a', 1.2 '#fb6a4a')",
        "[0:1.2]", [](const StabilityResult& r) { return r.single.worstBounds(); }},
-      {"albedo at rho_s = 1 (red: above 1)", "defined (0 '#bdbdbd', 0.9999 '#ffffff', 1.0001 '#fcbba1', 1.5 '#fb6a4a')",
+      {"albedo at rho_s = 1 (red: above 1)", "defined (0 '#bdbdbd', 1.0001 '#ffffff', 1.0002 '#fcbba1', 1.5 '#fb6a4a')",
        "[0:1.5]", [](const StabilityResult& r) { return r.lobe->albedo; }},
       {"stiffness, log10", "defined (0 '#ffffe5', 5 '#fec44f', 20 '#ec7014')", "[0:20]",
        [](const StabilityResult& r) { return r.estimators->logStiffness / kLn10; }},
@@ -367,7 +368,7 @@ void plotStability(const StabilityReport& report, const std::string& path) {
                             double(rows - 1 - row) / double(rows), 1.0 / double(columns), 1.0 / double(rows));
       script += fmt::format(
           "set title \"{}: {}\" noenhanced font ',12' offset 0,-0.5\nset xlabel 'alpha' offset 0,0.5\n"
-          "set ylabel 'theta_o, degrees' noenhanced offset 1.5,0\nset lmargin 9\nset rmargin 6\nset palette {}\nset "
+          "set ylabel 'theta_o, degrees' noenhanced offset 1.5,0\nset lmargin 11\nset rmargin 6\nset palette {}\nset "
           "cbrange {}\nset cbtics font ',8'\n",
           name(variants[row]), m.title, m.palette, m.range);
       script += fmt::format("plot $d{0} using 1:2:{1} with image", row, 2 * c + 3);
@@ -375,7 +376,7 @@ void plotStability(const StabilityReport& report, const std::string& path) {
       script += "\n";
     }
   script += "unset multiplot\n";
-  drawWithGnuplot(path, 1840, static_cast<int>(420 * rows), script);
+  drawWithGnuplot(path, 2240, static_cast<int>(420 * rows), script);
 }
 
 }  // namespace wardmis

@@ -88,5 +88,21 @@ TEST(Surface, FloatDirectionsSufficeAboveTheLine) {
   }
 }
 
+// As `wardmis stability` finds: float directions carry the lobe but for sharp ones, and wide ones that are sharp
+// across.
+TEST(Surface, NeedsDouble) {
+  const auto needs = [](float ax, float ay) {
+    Surface s;
+    s.ax = ax, s.ay = ay;
+    return s.needsDouble();
+  };
+  EXPECT_TRUE(needs(1e-4f, 1e-4f));
+  EXPECT_TRUE(needs(1.9e-3f, 0.5f));
+  EXPECT_FALSE(needs(2.1e-3f, 2.1e-3f));
+  EXPECT_TRUE(needs(0.01f, 10));
+  EXPECT_TRUE(needs(10, 0.01f));
+  EXPECT_FALSE(needs(0.1f, 10));
+}
+
 }  // namespace
 }  // namespace wardmis

@@ -177,6 +177,32 @@ TYPED_TEST(Numbers, Extremes) {
           }
 }
 
+// Cosines below the normal numbers: no NaN, and the weight is right where it is a number.
+TYPED_TEST(Numbers, DenormalCosines) {
+  using T = TypeParam;
+  using Limits = std::numeric_limits<T>;
+  for (T ci : {Limits::denorm_min(), Limits::min() / 4, Limits::min(), T(0.5)})
+    for (T co : {Limits::denorm_min(), Limits::min() / 4, T(1e-20), T(0.5)})
+      for (T side : {T(-1), T(0), T(1)})  // forward (h.x = 0), across, backward
+        for (double alpha : {1e-6, 0.1, 10.0}) {
+          const Vec3<T> wi{side, side == T(0) ? T(1) : T(0), ci}, wo{1, 0, co};
+          for (const Variant& v : kVariants) {
+            SCOPED_TRACE(testing::Message()
+                         << v.point << " cosines " << ci << " " << co << " side " << side << " alpha " << alpha);
+            const WardValue<T> value = ward(v.type, wi, wo, T(alpha), T(alpha));
+            EXPECT_GE(value.fCos, 0);  // not NaN either
+            EXPECT_GE(value.pdf, 0);
+            EXPECT_GE(wardWeight(v.type, wi, wo), 0);
+            if (side != T(-1)) continue;
+            const double exact = double(wardWeight<long double>(v.type, {wi.x, wi.y, wi.z}, {wo.x, wo.y, wo.z}));
+            if (exact > double(Limits::min()) && exact < double(Limits::max())) {
+              EXPECT_NEAR(double(wardWeight(v.type, wi, wo)), exact,
+                          (ci > Limits::min() ? 8 : 1e-3 / kEps<T>)*kEps<T> * exact);
+            }
+          }
+        }
+}
+
 TYPED_TEST(Numbers, NothingBelowTheHorizon) {
   using T = TypeParam;
   Random random(1);

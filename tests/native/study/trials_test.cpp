@@ -46,5 +46,25 @@ TEST(Trials, MeanAndVarianceAreThoseOfQuadrature) {
   EXPECT_GT(variances, 800);
 }
 
+// Down to one sample a technique: passes that would have none are not taken.
+TEST(Trials, FewSamples) {
+  StudyInput input;
+  input.alphaX = input.alphaY = 0.3;
+  const std::unique_ptr<Problem> problem = makeProblem(input);
+  const Exact exact = solve(*problem);
+  std::vector<const Strategy*> all;
+  for (const Strategy& s : strategies()) all.push_back(&s);
+  for (int n : {2, 3, 4, 7, 9}) {
+    TrialSettings settings;
+    settings.samples = n, settings.trials = 4000, settings.seed = 1;
+    for (const StrategyRun& run : runTrials(*problem, exact, all, settings)) {
+      SCOPED_TRACE(testing::Message() << n << " samples, " << run.strategy->name);
+      ASSERT_TRUE(std::isfinite(run.estimate.mean()));
+      if (run.strategy->knowledge == Knowledge::kDirect) continue;
+      EXPECT_LT(std::abs(run.estimate.mean() - exact.moments.integral), 4 * run.estimate.error() + 1e-13);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace wardmis
