@@ -50,8 +50,10 @@ struct WardHalf {
       return T(0.25) * e * (std::sqrt(ci) / std::sqrt(co));  // K/4 e^-E / sqrt(ci co)
     else if constexpr (V == WardVariant::kWardDur)
       return T(0.25) * e / co;  // K/4 e^-E / (ci co)
-    else
-      return (e * slope / hz) * (ci / hz);  // K e^-E |h|^2 / h.z^4
+    else {
+      const T root = std::sqrt(ci) / hz;  // of ci/hz^2, which may leave the range where the product does not
+      return (e * slope * root) * root;   // K e^-E |h|^2 / h.z^4 ci
+    }
   }
 };
 
@@ -102,9 +104,9 @@ inline T wardWeight(WardVariant variant, Vec3<T> wi, Vec3<T> wo) {
   const Vec3<T> h = wi + wo;
   if (variant == WardVariant::kWardGmd) return T(2) * wi.z / h.z;
   const T c = cosThetaHalf(h);  // (h.o) cos^3(theta_h) = h.z/2 c^2
-  const T a = T(0.5) * c * c,
-          root = std::sqrt(wo.z);  // by factors: no product leaves the range where the weight does not
-  return variant == WardVariant::kWard ? a * h.z * (std::sqrt(wi.z) / root) : a * (h.z / root) / root;
+  // each factor of the cosine with one of the others: no product leaves the range where the weight does not
+  const T root = std::sqrt(wo.z), x = T(0.5) * c * (h.z / root);
+  return variant == WardVariant::kWard ? x * (c * std::sqrt(wi.z)) : x * (c / root);
 }
 
 // ln of wardEvaluate().pdf, also where the density itself underflows; -infinity unless both directions are above.
