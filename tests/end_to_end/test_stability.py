@@ -19,7 +19,9 @@ class Stability(CommandTest):
         self.assertEqual(axes, {"grid", "anisotropy", "energy", "light", "samples", "grazing"})
         self.assertTrue(all(cell["pass"] for cell in report["cells"]))
         self.assertTrue(all(cell["lobe"]["albedo"] <= 1 + 1e-9 for cell in report["cells"] if "lobe" in cell))
-        self.assertGreater(max(cell["estimators"]["stiffness_log10"] for cell in report["cells"] if "estimators" in cell), 20)
+        self.assertGreater(
+            max(cell["estimators"]["stiffness_log10"] for cell in report["cells"] if "estimators" in cell), 20
+        )
         text = figure.read_text()
         self.assertTrue(text.rstrip().endswith("</svg>"))
         self.assertIn("ward-gmd: stiffness", text)

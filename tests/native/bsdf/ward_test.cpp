@@ -132,9 +132,10 @@ TYPED_TEST(Numbers, Extremes) {
   const double azimuths[] = {0, 1e-9, 1e-3, 1, kPi<double> / 2, 3, kPi<double> - 1e-6, kPi<double>};
   for (double ci : cosines)
     for (double co : cosines)
-      for (const auto& [ax, ay] : alphas)
+      for (const auto& alpha : alphas)
         for (double azimuth : azimuths)
           for (double turn : {0.0, 0.7}) {
+            const double ax = alpha[0], ay = alpha[1];
             const Vec3<T> wi = direction<T>(ci, azimuth + turn), wo = direction<T>(co, turn);
             for (const Variant& v : kVariants) {
               const WardValue<T> got = ward(v.type, wi, wo, T(ax), T(ay));
