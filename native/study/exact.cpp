@@ -108,28 +108,25 @@ Exact solve(const Problem& problem, size_t effort) {
   const int n = problem.techniques();
   Cubature cubature(problem);
   cubature.refine(moments(n), 1e-11, effort);
+  const auto atEdge = [&](int i) { return !std::isnan(problem.logSecondMomentAtEdge(i)); };
   bool edge = false;
-  for (int i = 0; i < n; ++i) edge |= !std::isnan(problem.logSecondMomentAtEdge(i));
+  for (int i = 0; i < n; ++i) edge |= atEdge(i);
   if (!edge) cubature.refine(secondMoments(n), 1e-10, effort);
 
   Exact e;
-  e.points = cubature.points();
-  e.moments = momentsOf(e.points);
-  for (int i = 0; edge && i < n; ++i)
-    if (!std::isnan(problem.logSecondMomentAtEdge(i))) e.moments.variancePrim[at(i)] = INFINITY;
+  // Of the present nodes; infinite where a peak at the edge leaves the nodes nothing to say of.
+  const auto measure = [&] {
+    e.points = cubature.points();
+    e.moments = momentsOf(e.points);
+    for (int i = 0; i < n; ++i)
+      if (atEdge(i)) e.moments.variancePrim[at(i)] = INFINITY;
+  };
+  measure();
   cubature.refine(deviations(e.points, e.moments), 1e-9, effort);
   cubature.refine(jumps(n), 1e-3, std::min<size_t>(50, effort));
+  measure();
 
-  e.points = cubature.points();
-  e.moments = momentsOf(e.points);
-  for (int i = 0; i < n; ++i)
-    if (const double log = problem.logSecondMomentAtEdge(i); !std::isnan(log)) {
-      e.moments.logSecond[at(i)] = log;
-      e.moments.variancePrim[at(i)] = std::max(0.0, std::exp(log) - square(e.moments.integral));
-    }
-  e.diffusePart = problem.input().diffusePart();
-  e.lobeNormalization = problem.lobeNormalization();
-
+  e.integralError = relativeError(e.points, [](const Point& x) { return x.f; });
   for (const Integrands& which : {moments(n), deviations(e.points, e.moments)})
     for (int k = 0; k < which.count; ++k) {
       std::vector<double> h(at(which.count));
@@ -139,6 +136,16 @@ Exact solve(const Problem& problem, size_t effort) {
       });
       e.relativeError = std::max(e.relativeError, error);
     }
+
+  for (int i = 0; i < n; ++i)
+    if (atEdge(i)) {
+      const double log = problem.logSecondMomentAtEdge(i);
+      e.moments.logSecond[at(i)] = log;
+      e.moments.variancePrim[at(i)] = std::max(0.0, std::exp(log) - square(e.moments.integral));
+    }
+  e.diffusePart = problem.input().diffusePart();
+  e.lobeNormalization = problem.lobeNormalization();
+
   return e;
 }
 

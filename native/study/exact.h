@@ -14,7 +14,8 @@ struct Exact {
   IntegrandMoments moments;
   double diffusePart = 0;  // L_o = moments.integral + diffusePart
   double lobeNormalization = 1;
-  double relativeError = 0;  // the largest estimate of the quadrature's
+  double integralError = 0;  // the quadrature's estimate for the integral (L_o), relative
+  double relativeError = 0;  // the largest estimate of all integrals that the estimators' moments are made of
 };
 // effort: cells that each step of the quadrature may add; fewer than it asks for where the last digits are not needed.
 Exact solve(const Problem& problem, size_t effort = 4000);

@@ -94,7 +94,7 @@ std::string studyTable(const Study& s) {
       "{} = {:.12g}{}   (quadrature, relative error about {:.0e})\n\n",
       planar ? "integral of the 1-D reduction + diffuse part" : "L_o", m.integral + s.exact.diffusePart,
       s.exact.diffusePart > 0 ? fmt::format(" = {:.12g} + {:.6g} diffuse", m.integral, s.exact.diffusePart) : "",
-      s.exact.relativeError);
+      s.exact.integralError);
   std::vector<std::vector<std::string>> rows{{"technique", "mu_i,eq", "sigma^2_i,eq", "m^2_i", "outside", "ns/sample"}};
   for (int i = 0; i < n; ++i)
     rows.push_back({std::string(name(s.input.techniques[at(i)])), number(m.mean[at(i)], 6),

@@ -42,6 +42,8 @@ void check(const json& c) {
   compare(c["expect"], ours, "", 1e-6, wrong);
   for (const std::string& w : wrong)
     ADD_FAILURE() << c["input"].dump() << w << " (" << exact.points.list.size() << " points)";
+  EXPECT_LT(exact.integralError, 1e-8) << c["input"].dump();
+  EXPECT_LT(exact.relativeError, 1e-6) << c["input"].dump();
 }
 
 TEST(Golden, EveryEstimatorCase) {
@@ -49,6 +51,21 @@ TEST(Golden, EveryEstimatorCase) {
 }
 TEST(Golden, EveryThreeTechniqueCase) {
   for (const json& c : test::golden()["three_technique_cases"]) check(c);
+}
+
+// A diffuse part far from a lobe: m^2_1 = 1e80 comes from the horizon's edge, apart from the nodes, which must not be
+// asked for its error. Values: composite Gauss-Legendre over theta and phi in 1280 x 1280 nodes, in logarithms.
+TEST(Exact, SecondMomentAtTheEdgeLeavesTheOthersTheirError) {
+  const json j{{"model", "ward"}, {"mode", "full"},      {"alpha", 0.17}, {"rho_d", 0.35},
+               {"rho_s", 0.42},   {"theta_o_deg", 47.0}, {"R", 1.3},      {"joint", true}};
+  const Exact exact = solve(*makeProblem(studyInputFromJson(j)));
+  EXPECT_NEAR(exact.moments.integral / 0.541095818751177, 1, 1e-10);
+  EXPECT_NEAR(exact.moments.variance[0] / 0.01090630666422, 1, 1e-10);
+  EXPECT_NEAR(exact.moments.variance[1] / 0.01261113363292, 1, 1e-10);
+  EXPECT_NEAR(exact.moments.logSecond[0], std::log(1.36463379030446e80), 1e-10);
+  EXPECT_NEAR(exact.moments.logSecond[1], std::log(0.846850548291764), 1e-10);
+  EXPECT_LT(exact.integralError, 1e-10);
+  EXPECT_LT(exact.relativeError, 1e-8);
 }
 
 }  // namespace
