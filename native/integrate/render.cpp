@@ -1,36 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "integrate/render.h"
 
-#include <tbb/blocked_range2d.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/global_control.h>
-#include <tbb/info.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
-#include <chrono>
+#include <bit>
 #include <condition_variable>
-#include <ctime>
 #include <mutex>
 #include <thread>
 
-#include "integrate/kernel.h"
-#include "math/error.h"
+#include "integrate/cost.h"
+#include "integrate/setup.h"
 
 namespace wardmis {
 namespace {
-
-constexpr int kTileSize = 16;
-
-double wallSeconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-// CPU time of all threads of the process.
-double cpuSeconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 // Calls a function every quarter of a second from a thread of its own, until destroyed.
 class Ticker {
@@ -56,40 +38,25 @@ class Ticker {
   std::thread thread_;
 };
 
-// One render in progress: passes of whole tiles, each adding the same number of camera samples to every pixel.
+// One render in progress: passes over the whole image, each adding the same number of camera samples to every pixel.
 class Run {
  public:
-  Run(const RenderSettings& settings, const RenderObserver& observer, FilmBuffer& film, KernelInput& input,
-      TileKernel kernel)
-      : settings_(settings), observer_(observer), film_(film), input_(input), kernel_(kernel), start_(wallSeconds()) {}
+  Run(const RenderSettings& settings, const RenderObserver& observer, const RenderSetup& setup, FilmBuffer& film)
+      : settings_(settings), observer_(observer), setup_(setup), film_(film), start_(now()) {}
 
-  double seconds() const { return wallSeconds() - start_; }
+  Clocks clocks() const { return now() - start_; }
+  double seconds() const { return clocks().wall; }
   Stop stop() const { return observer_.stop != nullptr ? observer_.stop->load(std::memory_order_relaxed) : Stop::kNo; }
   bool stopped() const { return stop() != Stop::kNo; }
 
   // Adds `samples` to every pixel. A stop that keeps the image lets the pass end; one that discards it does not: false.
   bool pass(uint32_t samples, Pilot* pilot) {
-    const int tilesX = (film_.width + kTileSize - 1) / kTileSize, tilesY = (film_.height + kTileSize - 1) / kTileSize;
-    const double total = double(tilesX) * tilesY;
     std::atomic<int> done{0};
+    const double total = tilesOf(film_);
     const Ticker ticker([&] { report(pilot != nullptr, samples * done.load() / total); });
-    tbb::parallel_for(
-        tbb::blocked_range2d<int>(0, tilesY, 1, 0, tilesX, 1),
-        [&](const auto& range) {
-          for (int ty = range.rows().begin(); ty != range.rows().end(); ++ty)
-            for (int tx = range.cols().begin(); tx != range.cols().end(); ++tx) {
-              if (stop() == Stop::kDiscard) return;
-              const Tile tile{tx * kTileSize,
-                              ty * kTileSize,
-                              std::min(film_.width, (tx + 1) * kTileSize),
-                              std::min(film_.height, (ty + 1) * kTileSize),
-                              film_.samples,
-                              samples};
-              kernel_(input_, tile, film_, pilot, counts_.local());
-              ++done;
-            }
-        },
-        tbb::simple_partitioner());
+    renderTiles(
+        setup_, film_, samples, pilot, [&]() -> Counts& { return counts_.local(); }, done,
+        [&] { return stop() == Stop::kDiscard; });
     if (stop() == Stop::kDiscard) return false;
     film_.samples += samples;
     return true;
@@ -101,14 +68,19 @@ class Run {
     while (film_.samples < target && !stopped()) {
       const double before = seconds();
       chunk = std::min(chunk, target - film_.samples);
+      if (observer_.checkpoint) {
+        const uint32_t next = film_.samples == 0 ? 1 : 2 * std::bit_floor(film_.samples);
+        chunk = std::min(chunk, next - film_.samples);
+      }
       if (!pass(chunk, pilot)) return;
-      const double now = seconds(), perSample = (now - before) / chunk;
+      const double after = seconds(), perSample = (after - before) / chunk;
       report(pilot != nullptr, 0);
+      checkpoint();
       if (observer_.image && pilot == nullptr) observer_.image(film_);
-      if (settings_.seconds > 0 && now + perSample > settings_.seconds) return;
+      if (settings_.seconds > 0 && after + perSample > settings_.seconds) return;
       // passes of about half a second: long enough to cost nothing, short enough to watch
       double next = std::min({2.0 * chunk, std::max(1.0, 0.5 / std::max(perSample, 1e-9)), 4096.0});
-      if (settings_.seconds > 0) next = std::min(next, std::max(1.0, (settings_.seconds - now) / perSample));
+      if (settings_.seconds > 0) next = std::min(next, std::max(1.0, (settings_.seconds - after) / perSample));
       chunk = static_cast<uint32_t>(next);
     }
   }
@@ -120,6 +92,16 @@ class Run {
   }
 
  private:
+  static Clocks now() { return {wallSeconds(), cpuSeconds()}; }
+
+  // Tells the observer, whose time does not count.
+  void checkpoint() {
+    if (!observer_.checkpoint || (!std::has_single_bit(film_.samples) && film_.samples != settings_.spp)) return;
+    const Clocks before = now();
+    observer_.checkpoint(film_, before - start_, counts());
+    start_ += now() - before;
+  }
+
   // partial: samples of the running pass, in mean over the pixels.
   void report(bool pilot, double partial) {
     if (!observer_.progress) return;
@@ -138,104 +120,73 @@ class Run {
 
   const RenderSettings& settings_;
   const RenderObserver& observer_;
+  const RenderSetup& setup_;
   FilmBuffer& film_;
-  KernelInput& input_;
-  TileKernel kernel_;
-  double start_;
+  Clocks start_;
   tbb::enumerable_thread_specific<Counts> counts_;
 };
 
-FilmBuffer renderInArena(const Scene& scene, const RenderSettings& settings, Statistics& stats,
+FilmBuffer renderInArena(const BuiltScene& built, const RenderSettings& settings, Statistics& stats,
                          const RenderObserver& observer) {
-  if (!scene.camera)
-    throw Error(ExitCode::kScene, scene.path + ": the scene has no camera", "add a camera, or make one active");
-  const double buildStart = wallSeconds();
-  Geometry geometry(scene);
-  const Environment environment(scene);
-  const Emitters emitters(scene, geometry, environment);
-  const Accel accel(geometry, settings.threads);
-  stats.buildSeconds = wallSeconds() - buildStart;
-
-  const bool joint = settings.integrand == Integrand::kJoint;
-  uint32_t n = needs(scene, geometry, emitters, joint);
-  if (settings.integrator == Integrator::kPath && settings.maxDepth > 1) n |= kNeedsBounces;
-  stats.needs = n;
-  stats.kernel = settings.generalKernel ? uint32_t{kKernelNeeds} : n & kKernelNeeds;
-  stats.leftOut = leftOut(scene, n, emitters);
-  stats.triangles = geometry.triangles;
-  stats.instances = geometry.placements.size();
-  stats.emissiveTriangles = emitters.emissiveTriangles();
-  stats.threads = settings.threads > 0 ? settings.threads : tbb::info::default_concurrency();
-
-  const bool surfaceRays = emitters.anyShared() || environment.exists() || (n & kNeedsBounces) != 0;
-  if (emitters.any()) stats.techniques |= maskOf(kLight);
-  if (surfaceRays && (n & kNeedsSpecular) != 0) stats.techniques |= maskOf(kLobe);
-  if (surfaceRays && (n & kNeedsDiffuse) != 0) stats.techniques |= maskOf(kCosine);
+  RenderSetup setup(built, settings);
+  stats.buildSeconds = built.seconds;
+  stats.needs = setup.needs;
+  stats.kernel = setup.kernelNeeds;
+  stats.leftOut = leftOut(built.scene, setup.needs, built.emitters);
+  stats.triangles = built.geometry.triangles;
+  stats.instances = built.geometry.placements.size();
+  stats.emissiveTriangles = built.emitters.emissiveTriangles();
+  stats.threads = threadsOf(settings.threads);
+  stats.techniques = setup.techniques;
   const uint32_t target = settings.seconds > 0 ? ~uint32_t{0} : settings.spp;
   // The pilot takes at most half of the samples; a render of one sample has none.
   const uint32_t pilotSpp = std::min(settings.pilotSpp, target / 2);
-  stats.allocated = needsMoments(settings.allocation) && (n & kNeedsAllocation) != 0 && pilotSpp > 0;
-  if (needsMoments(settings.allocation) && (n & kNeedsAllocation) != 0 && pilotSpp == 0)
+  stats.allocated = needsMoments(settings.allocation) && (setup.needs & kNeedsAllocation) != 0 && pilotSpp > 0;
+  if (needsMoments(settings.allocation) && (setup.needs & kNeedsAllocation) != 0 && pilotSpp == 0)
     stats.leftOut.emplace_back("no samples for a pilot: counts are equal");
 
-  const Film& film = scene.film;
-  FilmBuffer buffer(film.x1 - film.x0, film.y1 - film.y0);
-  const RenderScene world{scene, geometry, accel, emitters};
-  const CameraRays camera(*scene.camera, film);
-  const PixelFilter filter(film.filter, film.filterWidth);
-  const Sampler sampler(settings.sampler, settings.seed, settings.seconds > 0 ? 64 : settings.spp);
-  KernelInput input{world,
-                    camera,
-                    filter,
-                    sampler,
-                    nullptr,
-                    {},
-                    settings.allocation,
-                    settings.integrand,
-                    settings.weightRule(),
-                    settings.cost,
-                    settings.samplesPerHit,
-                    settings.integrator == Integrator::kPath ? settings.maxDepth : 1,
-                    emitters.any(),
-                    surfaceRays,
-                    film.x0,
-                    film.y0};
-  // Before the pilot, and for `equal`: the same count for every technique of an integral.
-  const TechniqueMask available = stats.techniques;
-  input.fractions =
-      joint ? allocate(Allocation::kEqual, {}, available, 0) : allocateSplit(Allocation::kEqual, {}, {}, available, 0);
-
-  Run run(settings, observer, buffer, input, tileKernel(stats.kernel));
+  FilmBuffer buffer = setup.film();
+  Run run(settings, observer, setup, buffer);
   if (observer.started) observer.started(stats);
-  const double cpuStart = cpuSeconds();
+  stats.cost = settings.cost;
   std::vector<Fractions> perPixel;
   if (stats.allocated) {
+    if (settings.measureCost) setup.input.cost = stats.cost = measureCost(built, settings).perSample;
     Pilot pilot(buffer.width, buffer.height, settings.allocation);
     run.until(pilotSpp, &pilot);
     if (!run.stopped()) {
-      perPixel =
-          pilot.fractions(settings.allocation, settings.integrand, available, settings.minFraction, settings.cost);
-      input.perPixel = &perPixel;
+      perPixel = pilot.fractions(settings.allocation, settings.integrand, setup.techniques, settings.minFraction,
+                                 setup.input.cost);
+      setup.input.perPixel = &perPixel;
     }
-    stats.pilotSeconds = run.seconds();
-    stats.pilotCpuSeconds = cpuSeconds() - cpuStart;
+    const Clocks pilotTime = run.clocks();
+    stats.pilotSeconds = pilotTime.wall;
+    stats.pilotCpuSeconds = pilotTime.cpu;
   }
   run.until(target, nullptr);
-  stats.renderSeconds = run.seconds() - stats.pilotSeconds;
-  stats.renderCpuSeconds = cpuSeconds() - cpuStart - stats.pilotCpuSeconds;
+  const Clocks time = run.clocks();
+  stats.renderSeconds = time.wall - stats.pilotSeconds;
+  stats.renderCpuSeconds = time.cpu - stats.pilotCpuSeconds;
   stats.counts = run.counts();
   return buffer;
 }
 
 }  // namespace
 
+FilmBuffer render(const BuiltScene& built, const RenderSettings& settings, Statistics& statistics,
+                  const RenderObserver& observer) {
+  FilmBuffer film;
+  withThreads(settings.threads, [&] { film = renderInArena(built, settings, statistics, observer); });
+  return film;
+}
+
 FilmBuffer render(const Scene& scene, const RenderSettings& settings, Statistics& statistics,
                   const RenderObserver& observer) {
-  const int threads = settings.threads > 0 ? settings.threads : tbb::info::default_concurrency();
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
-  tbb::task_arena arena(threads);
   FilmBuffer film;
-  arena.execute([&] { film = renderInArena(scene, settings, statistics, observer); });
+  withThreads(settings.threads, [&] {
+    const BuiltScene built(scene, settings.threads);
+    film = renderInArena(built, settings, statistics, observer);
+  });
   return film;
 }
 

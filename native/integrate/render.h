@@ -30,8 +30,9 @@ struct RenderSettings {
   int samplesPerHit = 3;
   uint32_t pilotSpp = 4;
   float minFraction = 0.1f;
-  Fractions cost{1, 1, 1};  // of a lobe, cosine and light sample, for `auto`
-  int maxDepth = 8;         // surface hits of a path
+  Fractions cost{1, 1, 1};   // of a lobe, cosine and light sample, for `auto`
+  bool measureCost = false;  // take the measured one instead; the image then depends on the machine
+  int maxDepth = 8;          // surface hits of a path
   uint64_t seed = 0;
   int threads = 0;  // 0: all
   bool generalKernel = false;
@@ -49,6 +50,14 @@ struct Statistics {
   int threads = 0;
   TechniqueMask techniques = 0;  // those that the scene has
   bool allocated = false;        // a pilot ran and counts were allocated by it
+  Fractions cost{1, 1, 1};       // that the allocation took into account
+};
+
+struct Clocks {
+  double wall = 0, cpu = 0;  // seconds; cpu: of all threads
+
+  Clocks operator-(const Clocks& b) const { return {wall - b.wall, cpu - b.cpu}; }
+  Clocks& operator+=(const Clocks& b) { return *this = {wall + b.wall, cpu + b.cpu}; }
 };
 
 struct Progress {
@@ -65,10 +74,18 @@ struct RenderObserver {
   std::function<void(const Statistics&)> started;  // needs and what is left out are known
   std::function<void(const Progress&)> progress;
   std::function<void(const FilmBuffer&)> image;  // between passes: the film is at rest
+  // At 1, 2, 4, 8 ... samples and the last: the film, the time so far from the pilot's start on, what was counted. The
+  // time that it takes itself does not count. Without a limit of time alone.
+  std::function<void(const FilmBuffer&, const Clocks&, const Counts&)> checkpoint;
   const std::atomic<Stop>* stop = nullptr;
 };
 
-// Renders scene.film's border. The scene must have a camera. Throws Error.
+struct BuiltScene;  // integrate/setup.h
+
+// Renders scene.film's border. Throws Error.
+FilmBuffer render(const BuiltScene& built, const RenderSettings& settings, Statistics& statistics,
+                  const RenderObserver& observer = {});
+// The same for one render alone.
 FilmBuffer render(const Scene& scene, const RenderSettings& settings, Statistics& statistics,
                   const RenderObserver& observer = {});
 

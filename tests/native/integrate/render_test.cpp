@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <thread>
 
+#include "integrate/cost.h"
 #include "integrate/passes.h"
 #include "math/error.h"
 #include "scenes.h"
@@ -52,6 +54,49 @@ RenderSettings quick() {
   s.spp = 12;
   s.threads = 2;
   return s;
+}
+
+TEST(Render, CheckpointsSeeTheFilmAtPowersOfTwoAndDoNotCount) {
+  const Scene scene = mixedScene();
+  RenderSettings s = quick();
+  s.allocation = Allocation::kSecondMoment;
+  Statistics plain, watched;
+  const FilmBuffer expected = render(scene, s, plain);
+  std::vector<uint32_t> at;
+  std::vector<double> wall;
+  RenderObserver observer;
+  observer.checkpoint = [&](const FilmBuffer& film, const Clocks& time, const Counts& counts) {
+    at.push_back(film.samples);
+    wall.push_back(time.wall);
+    EXPECT_EQ(counts.cameraRays, film.samples * film.pixels.size());
+    std::this_thread::sleep_for(std::chrono::milliseconds(40));
+  };
+  const FilmBuffer film = render(scene, s, watched, observer);
+  EXPECT_EQ(at, (std::vector<uint32_t>{1, 2, 4, 8, 12}));
+  EXPECT_TRUE(std::is_sorted(wall.begin(), wall.end()));
+  EXPECT_LT(wall.back() - wall.front(), 0.04 * 4) << "what the observer takes is no render time";
+  EXPECT_TRUE(same(film, expected));
+}
+
+TEST(Render, MeasuresWhatASampleCosts) {
+  const Scene scene = mixedScene(64);
+  RenderSettings s = quick();
+  s.spp = 400;
+  const BuiltScene built(scene, s.threads);
+  const TechniqueCost cost = measureCost(built, s);
+  double sum = 0;
+  for (size_t t = 0; t < kTechniques; ++t) {
+    EXPECT_GT(cost.sample[t], 0) << t;
+    EXPECT_LT(cost.sample[t], 1e-3) << t;
+    sum += double(cost.perSample[t]);
+  }
+  EXPECT_NEAR(sum, kTechniques, 1e-3);
+  Scene dark = mixedScene();
+  dark.lights.clear();
+  dark.materials[2].emission.value = {0, 0, 0};
+  dark.world = {};
+  const TechniqueCost none = measureCost(BuiltScene(dark, 2), s);
+  EXPECT_EQ(none.sample[kLight], 0) << "a technique that is not there costs nothing";
 }
 
 TEST(Render, DoesNotDependOnThreads) {

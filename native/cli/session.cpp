@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/session.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+namespace wardmis {
+namespace {
+
+std::atomic<Stop> stopRequest{Stop::kNo};
+static_assert(std::atomic<Stop>::is_always_lock_free, "set from a signal handler");
+
+void onSignal(int signal) {
+  // the second Ctrl-C no longer waits for the pass to end
+  const bool keep = signal == SIGINT && stopRequest.load() == Stop::kNo;
+  stopRequest.store(keep ? Stop::kKeep : Stop::kDiscard);
+}
+
+}  // namespace
+
+std::atomic<Stop>& stopOnSignals(bool watchStdin) {
+  struct sigaction action {};
+  action.sa_handler = onSignal;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+  if (watchStdin)
+    std::thread([] {
+      char c;
+      while (true) {
+        const ssize_t n = read(STDIN_FILENO, &c, 1);
+        if (n == 0 || (n < 0 && errno != EINTR)) break;
+      }
+      stopRequest.store(Stop::kDiscard);
+    }).detach();
+  return stopRequest;
+}
+
+Reporter::Reporter(const std::string& kind)
+    : json_(kind == "json"), bar_(kind == "bar" || (kind == "auto" && isatty(STDERR_FILENO) != 0)) {}
+
+void Reporter::event(const nlohmann::json& e) {
+  if (!json_) return;
+  const std::lock_guard lock(mutex_);
+  fmt::print("{}\n", e.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  std::fflush(stdout);
+}
+
+void Reporter::warn(const std::string& message) {
+  if (json_) return event({{"event", "warning"}, {"message", message}});
+  clear();
+  fmt::print(stderr, "wardmis: warning: {}\n", message);
+}
+
+void Reporter::info(const std::string& message) {
+  if (json_ || !bar_) return;
+  clear();
+  fmt::print(stderr, "{}\n", message);
+}
+
+void Reporter::bar(double fraction, const std::string& doing, double seconds, double left) {
+  if (!bar_) return;
+  constexpr int kWidth = 30;
+  const int full = static_cast<int>(fraction * kWidth);
+  fmt::print(stderr, "\r[{:#<{}}{:.<{}}] {:3.0f} %  {}  {:.1f} s, {:.1f} s left\x1b[K", "", full, "", kWidth - full,
+             100 * fraction, doing, seconds, left);
+  std::fflush(stderr);
+  drawn_ = true;
+}
+
+void Reporter::clear() {
+  if (drawn_) fmt::print(stderr, "\r\x1b[K");
+  drawn_ = false;
+}
+
+}  // namespace wardmis

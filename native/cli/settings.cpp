@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/settings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "cli/options.h"
+
+namespace wardmis {
+namespace {
+
+constexpr std::array kAllocations{Allocation::kEqual,
+                                  Allocation::kVariance,
+                                  Allocation::kStandardDeviation,
+                                  Allocation::kSecondMoment,
+                                  Allocation::kInverseVariance,
+                                  Allocation::kEqualised,
+                                  Allocation::kRepresentativity,
+                                  Allocation::kAlbedo,
+                                  Allocation::kAuto};
+constexpr std::array kWeights{Weights::kBalance, Weights::kNonbalance, Weights::kPower, Weights::kCutoff,
+                              Weights::kMaximum};
+constexpr std::array kIntegrands{Integrand::kSplit, Integrand::kJoint};
+constexpr std::array kIntegrators{Integrator::kDirect, Integrator::kPath};
+constexpr std::array kSamplers{SamplerType::kIndependent, SamplerType::kStratified, SamplerType::kSobol};
+
+Fractions costOf(const std::string& text) {
+  Fractions cost{};
+  const std::vector<std::string> parts = CLI::detail::split(text, ',');
+  bool good = parts.size() == kTechniques;
+  for (size_t t = 0; good && t < kTechniques; ++t)
+    good = CLI::detail::lexical_cast(parts[t], cost[t]) && cost[t] >= 1e-3f && cost[t] <= 1e6f;
+  if (!good)
+    throw Error(ExitCode::kUsage, fmt::format("--cost '{}'", text),
+                "give three numbers from 0.001 to 1e6, as in --cost 1,1,2, or 'measured'");
+  return cost;
+}
+
+}  // namespace
+
+void SettingOptions::add(CLI::App& app) {
+  app.add_option("--allocation", allocation_, "how the samples of a hit are shared")
+      ->check(among(kAllocations))
+      ->capture_default_str();
+  app.add_option("--weights", weights_, "MIS weights; auto: what the paper pairs with the allocation")
+      ->check(among(kWeights, {"auto"}))
+      ->capture_default_str();
+  app.add_option("--integrand", integrand_, "specular and diffuse as separate integrals or as one")
+      ->check(among(kIntegrands))
+      ->capture_default_str();
+  app.add_option("--integrator", integrator_, "direct light only, or all of it")
+      ->check(among(kIntegrators))
+      ->capture_default_str();
+  app.add_option("--sampler", sampler_, "where the random numbers come from")
+      ->check(among(kSamplers))
+      ->capture_default_str();
+  app.add_option("--samples-per-hit", numbers_.samplesPerHit, "samples shared at the first hit")
+      ->check(CLI::Range(1, kMaxSamplesPerHit))
+      ->capture_default_str();
+  app.add_option("--pilot-spp", numbers_.pilotSpp, "camera samples per pixel that estimate the moments")
+      ->check(CLI::Range(0u, 1u << 20))
+      ->capture_default_str();
+  app.add_option("--min-fraction", numbers_.minFraction, "no technique gets less than this share")
+      ->check(between(0.001, 0.5))
+      ->capture_default_str();
+  app.add_option("--cost", cost_,
+                 "of a lobe, cosine and light sample, for --allocation auto: three numbers, or 'measured' (the image "
+                 "then depends on the machine)")
+      ->capture_default_str();
+  app.add_option("--max-depth", numbers_.maxDepth, "surface hits of a path; 1 is direct light")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  app.add_option("--kernel", kernel_, "general: with everything compiled in; the image is the same")
+      ->check(CLI::IsMember({"auto", "general"}))
+      ->capture_default_str();
+}
+
+RenderSettings SettingOptions::chosen() const {
+  RenderSettings s = numbers_;
+  s.allocation = pick(allocation_, kAllocations);
+  if (weights_ != "auto") s.weights = pick(weights_, kWeights);
+  s.integrand = pick(integrand_, kIntegrands);
+  s.integrator = pick(integrator_, kIntegrators);
+  s.sampler = pick(sampler_, kSamplers);
+  s.generalKernel = kernel_ == "general";
+  s.measureCost = cost_ == "measured";
+  if (!s.measureCost) s.cost = costOf(cost_);
+  return s;
+}
+
+RenderSettings SettingOptions::with(const std::string& changes) const {
+  SettingOptions changed = *this;
+  CLI::App app;
+  changed.add(app);
+  std::vector<std::string> arguments;
+  for (const std::string& part : CLI::detail::split(changes, ',')) {
+    // a part without '=' goes on with a list: cost=1,1,2
+    if (part.find('=') == part.npos && !arguments.empty())
+      arguments.back() += "," + part;
+    else if (!part.empty())
+      arguments.push_back("--" + part);
+  }
+  std::reverse(arguments.begin(), arguments.end());  // as the parser wants them
+  try {
+    app.parse(arguments);
+  } catch (const CLI::ParseError& e) {
+    std::string keys;
+    for (const CLI::Option* option : app.get_options([](const CLI::Option* x) { return x->get_name() != "--help"; }))
+      keys += (keys.empty() ? "" : ", ") + option->get_name().substr(2);
+    throw Error(ExitCode::kUsage, fmt::format("'{}': {}", changes, e.what()), "give key=value with keys of: " + keys);
+  }
+  return changed.chosen();
+}
+
+nlohmann::json toJson(const RenderSettings& s) {
+  return {{"allocation", name(s.allocation)},
+          {"weights", name(s.weightRule())},
+          {"integrand", name(s.integrand)},
+          {"integrator", name(s.integrator)},
+          {"sampler", name(s.sampler)},
+          {"samples_per_hit", s.samplesPerHit},
+          {"pilot_spp", s.pilotSpp},
+          {"min_fraction", s.minFraction},
+          {"cost", s.measureCost ? nlohmann::json("measured") : nlohmann::json(s.cost)},
+          {"max_depth", s.maxDepth},
+          {"kernel", s.generalKernel ? "general" : "auto"}};
+}
+
+void useResolution(Scene& scene, const std::string& text) {
+  int w = 0, h = 0;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%dx%d%c", &w, &h, &rest) != 2 || w < 1 || h < 1 || w > 65536 || h > 65536)
+    throw Error(ExitCode::kUsage, fmt::format("--resolution '{}'", text), "give WIDTHxHEIGHT, for example 1920x1080");
+  Film& f = scene.film;
+  if (scene.camera) {
+    // keep the larger side of the view plane, as another aspect would in Blender
+    Camera& c = *scene.camera;
+    const float aspect = static_cast<float>(w) / static_cast<float>(h), old = (c.right - c.left) / (c.top - c.bottom);
+    const float cx = 0.5f * (c.left + c.right), cy = 0.5f * (c.bottom + c.top);
+    if (aspect >= 1) {
+      const float half = 0.5f * (old >= 1 ? c.right - c.left : c.top - c.bottom);
+      c.left = cx - half, c.right = cx + half, c.bottom = cy - half / aspect, c.top = cy + half / aspect;
+    } else {
+      const float half = 0.5f * (old >= 1 ? c.right - c.left : c.top - c.bottom);
+      c.bottom = cy - half, c.top = cy + half, c.left = cx - half * aspect, c.right = cx + half * aspect;
+    }
+  }
+  const double sx = double(w) / f.width, sy = double(h) / f.height;
+  f.x0 = static_cast<int>(f.x0 * sx), f.x1 = std::max(f.x0 + 1, static_cast<int>(f.x1 * sx));
+  f.y0 = static_cast<int>(f.y0 * sy), f.y1 = std::max(f.y0 + 1, static_cast<int>(f.y1 * sy));
+  f.width = w, f.height = h;
+}
+
+}  // namespace wardmis

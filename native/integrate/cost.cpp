@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "integrate/cost.h"
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include <Eigen/Dense>
+
+namespace wardmis {
+namespace {
+
+constexpr double kLongest = 0.5;  // seconds
+constexpr float kHeavy = 0.8f;    // share of the technique whose turn it is
+
+}  // namespace
+
+TechniqueCost measureCost(const BuiltScene& built, const RenderSettings& settings) {
+  TechniqueCost cost;
+  RenderSettings s = settings;
+  s.allocation = Allocation::kEqual;
+  RenderSetup setup(built, s);
+  std::vector<Fractions> turns{setup.input.fractions};
+  for (int t = 0; t < kTechniques; ++t) {
+    if ((setup.techniques >> t & 1u) == 0 || setup.techniques == (1u << t)) continue;
+    Fractions f{};
+    for (int k = 0; k < kTechniques; ++k) f[k] = k == t ? kHeavy : (1 - kHeavy) / 2;
+    turns.push_back(restrict(f, setup.techniques));
+  }
+
+  // Rows: one turn each of a round; CPU seconds = cameraSample * paths + sum sample[i] * n_i.
+  std::vector<std::array<double, 2 + kTechniques>> rows;
+  const double start = wallSeconds();
+  const double allowed = settings.seconds > 0 ? std::min(kLongest, settings.seconds / 50) : kLongest;
+  const uint32_t rounds = settings.seconds > 0 ? 64 : std::clamp(settings.spp / 50, 1u, 64u);
+  for (uint32_t round = 0; round < rounds && (round == 0 || wallSeconds() - start < allowed); ++round)
+    for (size_t k = 0; k < turns.size(); ++k) {
+      setup.input.fractions = turns[round % 2 == 0 ? k : turns.size() - 1 - k];  // ABCCBA
+      FilmBuffer film = setup.film();
+      film.samples = round;
+      tbb::enumerable_thread_specific<Counts> counts;
+      std::atomic<int> done{0};
+      const double before = cpuSeconds();
+      renderTiles(setup, film, 1, nullptr, [&]() -> Counts& { return counts.local(); }, done, {});
+      const double seconds = cpuSeconds() - before;
+      Counts sum;
+      for (const Counts& c : counts) sum += c;
+      rows.push_back(
+          {seconds, double(sum.cameraRays), double(sum.samples[0]), double(sum.samples[1]), double(sum.samples[2])});
+    }
+
+  std::vector<int> unknowns{0};  // column of each
+  for (int t = 0; t < kTechniques; ++t)
+    if ((setup.techniques >> t & 1u) != 0) unknowns.push_back(1 + t);
+  Eigen::MatrixXd a(Eigen::Index(rows.size()), Eigen::Index(unknowns.size()));
+  Eigen::VectorXd b(Eigen::Index(rows.size()));
+  for (size_t r = 0; r < rows.size(); ++r) {
+    b[Eigen::Index(r)] = rows[r][0];
+    for (size_t u = 0; u < unknowns.size(); ++u)
+      a(Eigen::Index(r), Eigen::Index(u)) = rows[r][1 + static_cast<size_t>(unknowns[u])];
+  }
+  const Eigen::VectorXd x = a.colPivHouseholderQr().solve(b);
+  double sum = 0;
+  int found = 0;
+  for (size_t u = 0; u < unknowns.size(); ++u) {
+    const double value = std::max(0.0, x[Eigen::Index(u)]);
+    if (unknowns[u] == 0)
+      cost.cameraSample = value;
+    else
+      cost.sample[static_cast<size_t>(unknowns[u] - 1)] = value;
+    if (unknowns[u] == 0 || !(value > 0)) continue;
+    sum += value, ++found;
+  }
+  if (found == 0) return cost;
+  const double mean = sum / found;
+  for (size_t t = 0; t < kTechniques; ++t)  // a cost of nothing is the clock's noise
+    if ((setup.techniques >> t & 1u) != 0)
+      cost.perSample[t] = static_cast<float>(std::max(cost.sample[t], 0.1 * mean) / mean);
+  return cost;
+}
+
+}  // namespace wardmis

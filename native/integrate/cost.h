@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a sample of each technique costs in this scene, on this machine, measured.
+#pragma once
+
+#include "integrate/setup.h"
+
+namespace wardmis {
+
+struct TechniqueCost {
+  // Seconds of CPU time: of a camera sample without the samples at its hit, and of one sample of each technique with
+  // all that follows from it (shadow rays, the path that goes on); 0 for techniques that the scene does not have.
+  double cameraSample = 0;
+  std::array<double, kTechniques> sample{};
+  Fractions perSample{1, 1, 1};  // the latter relative to their mean; 1 where nothing was measured
+};
+
+// Renders a few camera samples, which are thrown away, with the counts moved towards each technique in turn, and solves
+// for the costs by least squares: for every 50 of settings.spp one round of up to four samples per pixel, the first
+// round always, the others for at most half a second.
+TechniqueCost measureCost(const BuiltScene& built, const RenderSettings& settings);
+
+}  // namespace wardmis

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "integrate/setup.h"
+
+#include <tbb/blocked_range2d.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <chrono>
+#include <ctime>
+
+#include "math/error.h"
+
+namespace wardmis {
+namespace {
+
+constexpr int kTileSize = 16;
+
+const Scene& withCamera(const Scene& scene) {
+  if (!scene.camera)
+    throw Error(ExitCode::kScene, scene.path + ": the scene has no camera", "add a camera, or make one active");
+  return scene;
+}
+
+int tilesAcross(int pixels) { return (pixels + kTileSize - 1) / kTileSize; }
+
+uint32_t needsOf(const BuiltScene& built, const RenderSettings& s) {
+  uint32_t n = wardmis::needs(built.scene, built.geometry, built.emitters, s.integrand == Integrand::kJoint);
+  if (s.integrator == Integrator::kPath && s.maxDepth > 1) n |= kNeedsBounces;
+  return n;
+}
+
+// Whether rays of the surface's techniques can find light.
+bool surfaceRays(const BuiltScene& built, uint32_t needs) {
+  return built.emitters.anyShared() || built.environment.exists() || (needs & kNeedsBounces) != 0;
+}
+
+TechniqueMask techniquesOf(const BuiltScene& built, uint32_t needs) {
+  TechniqueMask mask = 0;
+  if (built.emitters.any()) mask |= maskOf(kLight);
+  if (surfaceRays(built, needs) && (needs & kNeedsSpecular) != 0) mask |= maskOf(kLobe);
+  if (surfaceRays(built, needs) && (needs & kNeedsDiffuse) != 0) mask |= maskOf(kCosine);
+  return mask;
+}
+
+}  // namespace
+
+BuiltScene::BuiltScene(const Scene& s, int threads)
+    : scene(withCamera(s)),
+      geometry((seconds = wallSeconds(), s)),
+      environment(s),
+      emitters(s, geometry, environment),
+      accel(geometry, threads) {
+  seconds = wallSeconds() - seconds;
+}
+
+RenderSetup::RenderSetup(const BuiltScene& built, const RenderSettings& s)
+    : needs(needsOf(built, s)),
+      kernelNeeds(s.generalKernel ? uint32_t{kKernelNeeds} : needs & kKernelNeeds),
+      techniques(techniquesOf(built, needs)),
+      world_{built.scene, built.geometry, built.accel, built.emitters},
+      camera_(*built.scene.camera, built.scene.film),
+      filter_(built.scene.film.filter, built.scene.film.filterWidth),
+      sampler_(s.sampler, s.seed, s.seconds > 0 ? 64 : s.spp),
+      input{world_,
+            camera_,
+            filter_,
+            sampler_,
+            nullptr,
+            s.integrand == Integrand::kJoint ? allocate(Allocation::kEqual, {}, techniques, 0)
+                                             : allocateSplit(Allocation::kEqual, {}, {}, techniques, 0),
+            s.allocation,
+            s.integrand,
+            s.weightRule(),
+            s.cost,
+            s.samplesPerHit,
+            s.integrator == Integrator::kPath ? s.maxDepth : 1,
+            built.emitters.any(),
+            surfaceRays(built, needs),
+            built.scene.film.x0,
+            built.scene.film.y0},
+      kernel(tileKernel(kernelNeeds)) {}
+
+FilmBuffer RenderSetup::film() const {
+  const Film& f = world_.scene.film;
+  return {f.x1 - f.x0, f.y1 - f.y0};
+}
+
+int tilesOf(const FilmBuffer& film) { return tilesAcross(film.width) * tilesAcross(film.height); }
+
+void renderTiles(const RenderSetup& setup, FilmBuffer& film, uint32_t samples, Pilot* pilot,
+                 const std::function<Counts&()>& counts, std::atomic<int>& tilesDone,
+                 const std::function<bool()>& discard) {
+  tbb::parallel_for(
+      tbb::blocked_range2d<int>(0, tilesAcross(film.height), 1, 0, tilesAcross(film.width), 1),
+      [&](const auto& range) {
+        for (int ty = range.rows().begin(); ty != range.rows().end(); ++ty)
+          for (int tx = range.cols().begin(); tx != range.cols().end(); ++tx) {
+            if (discard && discard()) return;
+            const Tile tile{tx * kTileSize,
+                            ty * kTileSize,
+                            std::min(film.width, (tx + 1) * kTileSize),
+                            std::min(film.height, (ty + 1) * kTileSize),
+                            film.samples,
+                            samples};
+            setup.kernel(setup.input, tile, film, pilot, counts());
+            ++tilesDone;
+          }
+      },
+      tbb::simple_partitioner());
+}
+
+int threadsOf(int setting) { return setting > 0 ? setting : tbb::info::default_concurrency(); }
+
+void withThreads(int threads, const std::function<void()>& work) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<size_t>(threadsOf(threads)));
+  tbb::task_arena arena(threadsOf(threads));
+  arena.execute(work);
+}
+
+double wallSeconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+double cpuSeconds() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+}  // namespace wardmis

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What stands between a scene and its pixels: what is built once for any number of renders, and what each render's
+// settings make of it.
+#pragma once
+
+#include <atomic>
+#include <functional>
+
+#include "integrate/kernel.h"
+#include "integrate/render.h"
+#include "scene/environment.h"
+
+namespace wardmis {
+
+// A scene with its geometry, lights and acceleration structure. `scene` must outlive it, and must have a camera.
+struct BuiltScene {
+  BuiltScene(const Scene& scene, int threads);  // threads: 0 for all; throws Error
+
+  double seconds = 0;  // that the building took
+  const Scene& scene;
+  Geometry geometry;
+  Environment environment;
+  Emitters emitters;
+  Accel accel;
+};
+
+// The kernel for these settings, and its input. Fractions are those of equal counts until they are set.
+struct RenderSetup {
+  RenderSetup(const BuiltScene& built, const RenderSettings& settings);
+  RenderSetup(const RenderSetup&) = delete;
+  RenderSetup& operator=(const RenderSetup&) = delete;
+
+  FilmBuffer film() const;  // an empty one, of the border's size
+
+  uint32_t needs = 0, kernelNeeds = 0;
+  TechniqueMask techniques = 0;  // that the scene has
+
+ private:
+  RenderScene world_;
+  CameraRays camera_;
+  PixelFilter filter_;
+  Sampler sampler_;
+
+ public:
+  KernelInput input;
+  TileKernel kernel;
+};
+
+// Adds `samples` camera samples to every pixel of the film, in tiles, by all threads; film.samples is the caller's to
+// raise. counts: gives the calling thread's; tilesDone is raised by each tile that is ready; as soon as `discard` (may
+// be empty) says true, the rest is left.
+void renderTiles(const RenderSetup& setup, FilmBuffer& film, uint32_t samples, Pilot* pilot,
+                 const std::function<Counts&()>& counts, std::atomic<int>& tilesDone,
+                 const std::function<bool()>& discard);
+int tilesOf(const FilmBuffer& film);
+
+// Limits the threads of what runs in it.
+void withThreads(int threads, const std::function<void()>& work);
+int threadsOf(int setting);  // 0: all
+
+double wallSeconds();
+double cpuSeconds();  // of all threads of the process
+
+}  // namespace wardmis
