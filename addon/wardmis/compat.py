@@ -188,3 +188,23 @@ else:
     PRINCIPLED_SPECULAR, PRINCIPLED_SPECULAR_OF_IOR = "Specular", False
     PRINCIPLED_EMISSION = "Emission"
     PRINCIPLED_EXTRAS = ("Subsurface", "Transmission", "Clearcoat", "Sheen")
+
+
+# --- Cycles and its files -------------------------------------------------------------------------------------------
+
+
+def multilayer_exr(image_settings: Any) -> list[tuple[Any, str, Any]]:
+    """What makes Blender write one part of all layers and passes, in linear Rec. 709, 32 bits: (owner, setting, value), in order."""
+    return [
+        (image_settings, "media_type", "MULTI_LAYER_IMAGE"),  # from 5.0, and before the format
+        (image_settings, "file_format", "OPEN_EXR_MULTILAYER"),
+        (image_settings, "color_depth", "32"),
+        (image_settings, "exr_codec", "ZIP"),
+        (image_settings, "use_exr_interleave", True),  # 5.2 writes a part for each pass without it
+        (image_settings, "color_management", "FOLLOW_SCENE"),
+    ]
+
+
+def shadow_terminator_owner(obj: Any) -> Any:
+    """Who has an object's `shadow_terminator_*`: they were Cycles' own until 4.2."""
+    return obj if hasattr(obj, "shadow_terminator_geometry_offset") else getattr(obj, "cycles", None)

@@ -136,6 +136,15 @@ class Renderer:
     def running(self) -> bool:
         return self._process.poll() is None
 
+    def exit_code(self) -> int | None:
+        return self._process.poll()
+
+    def close_input(self) -> None:
+        """Asks a process that watches its input to end, with what it has done so far; returns at once."""
+        with contextlib.suppress(OSError):
+            if self._process.stdin is not None:
+                self._process.stdin.close()
+
     def events(self, wait_seconds: float) -> list[dict[str, Any]]:
         """The events so far; waits for the first one up to `wait_seconds`."""
         events = []
