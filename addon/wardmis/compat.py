@@ -205,6 +205,18 @@ def multilayer_exr(image_settings: Any) -> list[tuple[Any, str, Any]]:
     ]
 
 
+def cycles_samples(cycles: Any, first: int, count: int) -> list[tuple[Any, str, Any]]:
+    """What makes Cycles take `count` samples of its sequence from number `first` on: (owner, setting, value)."""
+    if not hasattr(cycles, "use_sample_subset"):
+        return [(cycles, "sample_offset", first), (cycles, "samples", count)]
+    return [  # in 5.x the samples are those of all parts
+        (cycles, "use_sample_subset", first > 0),
+        (cycles, "sample_offset", first),
+        (cycles, "sample_subset_length", count),
+        (cycles, "samples", first + count),
+    ]
+
+
 def shadow_terminator_owner(obj: Any) -> Any:
     """Who has an object's `shadow_terminator_*`: they were Cycles' own until 4.2."""
     return obj if hasattr(obj, "shadow_terminator_geometry_offset") else getattr(obj, "cycles", None)

@@ -74,7 +74,8 @@ def _about(scene: Any, layer: Any, scene_file: SceneFile, plan: CyclesPlan) -> d
         )
     else:
         notes.append(
-            "clamping, filtered glossiness, light threshold, adaptive sampling, denoising, fast GI and shadow terminator offsets are off"
+            "clamping, filtered glossiness, light threshold, adaptive sampling, denoising, fast GI and shadow terminator offsets are off; "
+            "the first sample of Cycles' sequence, which lies in the middle of each pixel whatever the filter, is left out"
         )
     notes += different
     return {
@@ -174,7 +175,8 @@ class _Renders:
 
     def _timed(self, spp: int, seed: int) -> float:
         """Renders; returns the CPU seconds of this process."""
-        self.scene.cycles.samples, self.scene.cycles.seed = spp, seed
+        for owner, name, value in cycles_settings.samples(self.scene, spp, seed, self.plan.as_is):
+            setattr(owner, name, value)
         began = time.process_time()
         try:
             ended = bpy.ops.render.render(scene=self.scene.name, layer=self.layer.name)

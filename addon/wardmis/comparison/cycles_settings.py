@@ -11,17 +11,18 @@ from .overrides import Setting
 
 FILTERS = {"box": "BOX", "gaussian": "GAUSSIAN", "blackman-harris": "BLACKMAN_HARRIS"}
 
+# a number from which Cycles' sequences go on as well distributed as they begin: they are so in powers of two
+LATER_SAMPLES = 8192
+
 
 def frame(scene: Any, layer: Any, film: dict[str, Any], threads: int) -> Iterator[Setting]:
     """What makes both render the same pixels by the same filter on the same processor, into a file of Combined alone."""
     render, cycles = scene.render, scene.cycles
     yield render, "engine", "CYCLES"
     yield cycles, "device", "CPU"
-    yield cycles, "samples", 1  # these two are set for each render
-    yield cycles, "seed", 0
+    yield from samples(scene, 1, 0, as_is=True)  # these are set for each render
     yield cycles, "use_animated_seed", False
     yield cycles, "time_limit", 0.0
-    yield cycles, "sample_offset", 0
     yield layer, "samples", 0  # it would replace the scene's
     yield render, "threads_mode", "FIXED" if threads else "AUTO"
     if threads:
@@ -41,6 +42,13 @@ def frame(scene: Any, layer: Any, film: dict[str, Any], threads: int) -> Iterato
         if prop.identifier.startswith("use_pass_") and prop.type == "BOOLEAN":
             yield layer, prop.identifier, prop.identifier == "use_pass_combined"
     yield from compat.multilayer_exr(render.image_settings)
+
+
+def samples(scene: Any, spp: int, seed: int, as_is: bool) -> Iterator[Setting]:
+    """How many samples, of which sequence. Cycles puts the very first one of each pixel in its middle, whatever the pixel's filter;
+    the others are where they belong."""
+    yield scene.cycles, "seed", seed
+    yield from compat.cycles_samples(scene.cycles, 0 if as_is else LATER_SAMPLES, spp)
 
 
 def unbiased(scene: Any, bounces: int) -> Iterator[Setting]:
