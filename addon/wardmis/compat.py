@@ -220,3 +220,38 @@ def cycles_samples(cycles: Any, first: int, count: int) -> list[tuple[Any, str, 
 def shadow_terminator_owner(obj: Any) -> Any:
     """Who has an object's `shadow_terminator_*`: they were Cycles' own until 4.2."""
     return obj if hasattr(obj, "shadow_terminator_geometry_offset") else getattr(obj, "cycles", None)
+
+
+# --- the user interface ---------------------------------------------------------------------------------------------
+
+LINEAR_SPACE = "Linear Rec.709" if VERSION >= (4, 0, 0) else "Linear"
+
+
+def progress_bar(layout: Any, fraction: float, text: str) -> None:
+    """A bar from 4.0 on; before, the text has to say it all."""
+    if hasattr(layout, "progress"):
+        layout.progress(factor=fraction, text=text)
+    else:
+        layout.label(text=text, icon="TIME")
+
+
+def uniform_colour_shader() -> Any:
+    import gpu
+
+    return gpu.shader.from_builtin("UNIFORM_COLOR" if VERSION >= (4, 0, 0) else "3D_UNIFORM_COLOR")
+
+
+def pixel_projection(width: int, height: int) -> Any:
+    """From pixels to what the GPU takes, -1 to 1."""
+    from mathutils import Matrix
+
+    return Matrix(((2 / width, 0, 0, -1), (0, 2 / height, 0, -1), (0, 0, -1, 0), (0, 0, 0, 1)))
+
+
+def text_size(font: int, size: float) -> None:
+    import blf  # type: ignore[import-not-found]
+
+    if VERSION >= (4, 0, 0):
+        blf.size(font, size)
+    else:
+        blf.size(font, size, 72)
