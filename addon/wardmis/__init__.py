@@ -11,12 +11,13 @@ bl_info = {
     "description": "Ward reflectance with multiple importance sampling under chosen allocations of the samples",
 }
 
-from . import engine, nodes, operators, panels, preferences, properties  # noqa: E402
+from . import comparison, engine, nodes, operators, panels, preferences, properties, scripting  # noqa: E402
+from .comparison import compare  # noqa: E402
 from .operators import export_scene  # noqa: E402
 
-__all__ = ["export_scene", "register", "unregister"]
+__all__ = ["compare", "export_scene", "register", "unregister"]
 
-_PARTS = (preferences, properties, nodes, engine, operators, panels)
+_PARTS = (preferences, properties, nodes, engine, operators, panels, comparison, scripting)
 
 
 def register() -> None:

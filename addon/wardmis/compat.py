@@ -188,3 +188,70 @@ else:
     PRINCIPLED_SPECULAR, PRINCIPLED_SPECULAR_OF_IOR = "Specular", False
     PRINCIPLED_EMISSION = "Emission"
     PRINCIPLED_EXTRAS = ("Subsurface", "Transmission", "Clearcoat", "Sheen")
+
+
+# --- Cycles and its files -------------------------------------------------------------------------------------------
+
+
+def multilayer_exr(image_settings: Any) -> list[tuple[Any, str, Any]]:
+    """What makes Blender write one part of all layers and passes, in linear Rec. 709, 32 bits: (owner, setting, value), in order."""
+    return [
+        (image_settings, "media_type", "MULTI_LAYER_IMAGE"),  # from 5.0, and before the format
+        (image_settings, "file_format", "OPEN_EXR_MULTILAYER"),
+        (image_settings, "color_depth", "32"),
+        (image_settings, "exr_codec", "ZIP"),
+        (image_settings, "use_exr_interleave", True),  # 5.2 writes a part for each pass without it
+        (image_settings, "color_management", "FOLLOW_SCENE"),
+    ]
+
+
+def cycles_samples(cycles: Any, first: int, count: int) -> list[tuple[Any, str, Any]]:
+    """What makes Cycles take `count` samples of its sequence from number `first` on: (owner, setting, value)."""
+    if not hasattr(cycles, "use_sample_subset"):
+        return [(cycles, "sample_offset", first), (cycles, "samples", count)]
+    return [  # in 5.x the samples are those of all parts
+        (cycles, "use_sample_subset", first > 0),
+        (cycles, "sample_offset", first),
+        (cycles, "sample_subset_length", count),
+        (cycles, "samples", first + count),
+    ]
+
+
+def shadow_terminator_owner(obj: Any) -> Any:
+    """Who has an object's `shadow_terminator_*`: they were Cycles' own until 4.2."""
+    return obj if hasattr(obj, "shadow_terminator_geometry_offset") else getattr(obj, "cycles", None)
+
+
+# --- the user interface ---------------------------------------------------------------------------------------------
+
+LINEAR_SPACE = "Linear Rec.709" if VERSION >= (4, 0, 0) else "Linear"
+
+
+def progress_bar(layout: Any, fraction: float, text: str) -> None:
+    """A bar from 4.0 on; before, the text has to say it all."""
+    if hasattr(layout, "progress"):
+        layout.progress(factor=fraction, text=text)
+    else:
+        layout.label(text=text, icon="TIME")
+
+
+def uniform_colour_shader() -> Any:
+    import gpu
+
+    return gpu.shader.from_builtin("UNIFORM_COLOR" if VERSION >= (4, 0, 0) else "3D_UNIFORM_COLOR")
+
+
+def pixel_projection(width: int, height: int) -> Any:
+    """From pixels to what the GPU takes, -1 to 1."""
+    from mathutils import Matrix
+
+    return Matrix(((2 / width, 0, 0, -1), (0, 2 / height, 0, -1), (0, 0, -1, 0), (0, 0, 0, 1)))
+
+
+def text_size(font: int, size: float) -> None:
+    import blf  # type: ignore[import-not-found]
+
+    if VERSION >= (4, 0, 0):
+        blf.size(font, size)
+    else:
+        blf.size(font, size, 72)

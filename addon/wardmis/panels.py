@@ -36,7 +36,7 @@ INCLUDED = {
 }
 
 
-class _Panel:
+class Panel:
     bl_space_type = "PROPERTIES"
     bl_region_type = "WINDOW"
     COMPAT_ENGINES = {ENGINE}
@@ -52,7 +52,7 @@ class _Panel:
         return self.layout.column()
 
 
-class _RenderPanel(_Panel):
+class RenderPanel(Panel):
     bl_context = "render"
 
 
@@ -63,7 +63,7 @@ def _row(column: Any, active: bool) -> Any:
     return row
 
 
-class WARDMIS_RENDER_PT_sampling(_RenderPanel, bpy.types.Panel):
+class WARDMIS_RENDER_PT_sampling(RenderPanel, bpy.types.Panel):
     bl_label = "Sampling"
 
     def draw(self, context: Any) -> None:
@@ -75,7 +75,7 @@ class WARDMIS_RENDER_PT_sampling(_RenderPanel, bpy.types.Panel):
         column.prop(settings, "seed")
 
 
-class WARDMIS_RENDER_PT_allocation(_RenderPanel, bpy.types.Panel):
+class WARDMIS_RENDER_PT_allocation(RenderPanel, bpy.types.Panel):
     bl_label = "Allocation"
 
     def draw(self, context: Any) -> None:
@@ -90,7 +90,7 @@ class WARDMIS_RENDER_PT_allocation(_RenderPanel, bpy.types.Panel):
         _row(column, pilot).prop(settings, "min_fraction")
 
 
-class WARDMIS_RENDER_PT_light_paths(_RenderPanel, bpy.types.Panel):
+class WARDMIS_RENDER_PT_light_paths(RenderPanel, bpy.types.Panel):
     bl_label = "Light Paths"
 
     def draw(self, context: Any) -> None:
@@ -99,7 +99,7 @@ class WARDMIS_RENDER_PT_light_paths(_RenderPanel, bpy.types.Panel):
         _row(column, settings.integrator == "path").prop(settings, "max_depth")
 
 
-class WARDMIS_RENDER_PT_film(_RenderPanel, bpy.types.Panel):
+class WARDMIS_RENDER_PT_film(RenderPanel, bpy.types.Panel):
     bl_label = "Film"
     bl_options = {"DEFAULT_CLOSED"}
 
@@ -111,7 +111,7 @@ class WARDMIS_RENDER_PT_film(_RenderPanel, bpy.types.Panel):
         column.prop(context.scene.render, "film_transparent", text="Transparent")
 
 
-class WARDMIS_RENDER_PT_performance(_RenderPanel, bpy.types.Panel):
+class WARDMIS_RENDER_PT_performance(RenderPanel, bpy.types.Panel):
     bl_label = "Performance"
     bl_options = {"DEFAULT_CLOSED"}
 
@@ -119,7 +119,7 @@ class WARDMIS_RENDER_PT_performance(_RenderPanel, bpy.types.Panel):
         self._column().prop(context.scene.wardmis, "threads")
 
 
-class WARDMIS_VIEWLAYER_PT_override(_Panel, bpy.types.Panel):
+class WARDMIS_VIEWLAYER_PT_override(Panel, bpy.types.Panel):
     bl_label = "Override"
     bl_context = "view_layer"
     bl_options = {"DEFAULT_CLOSED"}
@@ -131,7 +131,7 @@ class WARDMIS_VIEWLAYER_PT_override(_Panel, bpy.types.Panel):
             column.prop(context.view_layer, "world_override")
 
 
-class WARDMIS_OBJECT_PT_ray_visibility(_Panel, bpy.types.Panel):
+class WARDMIS_OBJECT_PT_ray_visibility(Panel, bpy.types.Panel):
     bl_label = "Ray Visibility"
     bl_context = "object"
     bl_parent_id = "OBJECT_PT_visibility"
@@ -142,7 +142,7 @@ class WARDMIS_OBJECT_PT_ray_visibility(_Panel, bpy.types.Panel):
             column.prop(context.object, f"visible_{kind}", text=kind.title())
 
 
-class WARDMIS_LIGHT_PT_light(_Panel, bpy.types.Panel):
+class WARDMIS_LIGHT_PT_light(Panel, bpy.types.Panel):
     bl_label = "Light"
     bl_context = "data"
 

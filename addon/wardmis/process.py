@@ -84,8 +84,10 @@ def version(path: Path) -> str:
 class Renderer:
     """A running renderer. Leaving the `with` block ends it in any case."""
 
-    def __init__(self, command: list[str]) -> None:
+    def __init__(self, command: list[str], name: str = "the renderer") -> None:
+        """`name` is what messages call it."""
         self.path = command[0]
+        self._name = name
         self._events: queue.SimpleQueue[dict[str, Any]] = queue.SimpleQueue()
         self._tail: deque[str] = deque(maxlen=6)  # of what it said besides events
         self._error: dict[str, Any] | None = None
@@ -95,7 +97,7 @@ class Renderer:
                 command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True
             )
         except OSError as error:
-            raise RendererError(f"the renderer {command[0]} cannot be run: {error.strerror or error}") from error
+            raise RendererError(f"{name} {command[0]} cannot be run: {error.strerror or error}") from error
         self._readers = [
             threading.Thread(target=self._read_events, daemon=True),
             threading.Thread(target=self._read_messages, daemon=True),
@@ -136,6 +138,15 @@ class Renderer:
     def running(self) -> bool:
         return self._process.poll() is None
 
+    def exit_code(self) -> int | None:
+        return self._process.poll()
+
+    def close_input(self) -> None:
+        """Asks a process that watches its input to end, with what it has done so far; returns at once."""
+        with contextlib.suppress(OSError):
+            if self._process.stdin is not None:
+                self._process.stdin.close()
+
     def events(self, wait_seconds: float) -> list[dict[str, Any]]:
         """The events so far; waits for the first one up to `wait_seconds`."""
         events = []
@@ -160,11 +171,11 @@ class Renderer:
 
     def _failure(self, code: int) -> str:
         if self._error is not None:
-            return f"the renderer failed (exit code {code}): {self._error.get('message', 'no message')}"
+            return f"{self._name} failed (exit code {code}): {self._error.get('message', 'no message')}"
         if code < 0:
             with contextlib.suppress(ValueError):
-                return f"the renderer crashed ({signal.Signals(-code).name}){self.said()}"
-        return f"the renderer failed (exit code {code}){self.said() or ' without a message'}"
+                return f"{self._name} crashed ({signal.Signals(-code).name}){self.said()}"
+        return f"{self._name} failed (exit code {code}){self.said() or ' without a message'}"
 
     def stop(self) -> None:
         """Ends the process, gently for a moment, then not; closes what connects to it."""

@@ -7,7 +7,6 @@ Every pixel of pass number k (from 0) is k + x / width + 10 y / height, x and y 
 """
 
 import argparse
-import array
 import json
 import os
 import signal
@@ -16,6 +15,9 @@ import sys
 import threading
 import time
 from pathlib import Path
+
+import fake_converge
+from fake_files import say, write_exr
 
 MODES = {
     "good": "renders",
@@ -46,13 +48,15 @@ def main():
         return 0
     mode = os.environ.get("WARDMIS_FAKE", "good")
     assert mode in MODES, f"WARDMIS_FAKE is {mode}; it can be {', '.join(MODES)}"
-    options = parse()
+    converges = sys.argv[1:2] == ["converge"]
+    options = fake_converge.parse() if converges else parse()
     if "WARDMIS_FAKE_LOG" in os.environ:
         with open(os.environ["WARDMIS_FAKE_LOG"], "a") as log:
             log.write(json.dumps({"pid": os.getpid(), "arguments": sys.argv[1:]}) + "\n")
     if options.watch_stdin:
         threading.Thread(target=stop_when_input_ends, daemon=True).start()
     scene = read_scene(options.scene)
+    film = scene["extensions"]["WARDMIS_scene"]["film"]
     if mode == "exit3":
         say(event="error", code=3, message="bufferViews[0]: lies beyond the file; export the scene again")
         print("wardmis: error: bufferViews[0]: lies beyond the file; export the scene again", file=sys.stderr)
@@ -62,7 +66,9 @@ def main():
     if mode == "garbage":
         sys.stdout.buffer.write(b"\xff\xfe garbage\n[1, 2]\n" * 1000)
         return 0
-    render(options, scene["extensions"]["WARDMIS_scene"]["film"], mode)
+    if converges:
+        return fake_converge.converge(options, film, mode)
+    render(options, film, mode)
     return 0
 
 
@@ -84,6 +90,8 @@ def parse():
 def stop_when_input_ends():
     while os.read(0, 1024):  # not sys.stdin, whose lock would disturb the end of this program
         pass
+    if sys.argv[1] == "converge":
+        os._exit(130)
     os.kill(os.getpid(), signal.SIGKILL)
 
 
@@ -92,10 +100,6 @@ def read_scene(path):
     magic, version, size, length, kind = struct.unpack_from("<4sIIII", data)
     assert (magic, version, size, kind) == (b"glTF", 2, len(data), 0x4E4F534A)
     return json.loads(data[20 : 20 + length])
-
-
-def say(**event):
-    print(json.dumps(event), flush=True)
 
 
 def render(options, film, mode):
@@ -140,47 +144,6 @@ def render(options, film, mode):
     if mode != "nothing":
         write_exr(options.output, options.layer, PASSES, film)
     say(event="done", path=options.output, seconds=0.1, samples=options.spp, stats={"samples_per_pixel": options.spp})
-
-
-def write_exr(path, layer, passes, film):
-    """An uncompressed scan-line OpenEXR of 32-bit floats, by a temporary name and a rename."""
-    x0, y0, x1, y1 = film["border"]
-    full_width, full_height = film["resolution"]
-    width, height = x1 - x0, y1 - y0
-    channels = sorted(
-        (f"{layer}.{name}.{channel}".encode(), k)
-        for k, (name, letters) in enumerate(passes.items())
-        for channel in letters
-    )
-    channel_list = b"".join(name + struct.pack("<xiB3xii", 2, 0, 1, 1) for name, _ in channels) + b"\0"
-    window = struct.pack("<4i", 0, 0, width - 1, height - 1)
-    attributes = (
-        ("channels", "chlist", channel_list),
-        ("compression", "compression", b"\0"),
-        ("dataWindow", "box2i", window),
-        ("displayWindow", "box2i", window),
-        ("lineOrder", "lineOrder", b"\0"),
-        ("pixelAspectRatio", "float", struct.pack("<f", 1)),
-        ("screenWindowCenter", "v2f", struct.pack("<2f", 0, 0)),
-        ("screenWindowWidth", "float", struct.pack("<f", 1)),
-    )
-    header = struct.pack("<II", 20000630, 2)
-    for name, kind, value in attributes:
-        header += name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
-    header += b"\0"
-    line_bytes = 8 + 4 * width * len(channels)
-    start = len(header) + 8 * height
-    with open(f"{path}.tmp", "wb") as file:
-        file.write(header)
-        file.write(struct.pack(f"<{height}Q", *(start + line_bytes * i for i in range(height))))
-        for line in range(height):
-            y = y1 - 1 - line  # files count from the top, borders from the bottom
-            file.write(struct.pack("<ii", line, line_bytes - 8))
-            for _, k in channels:
-                file.write(
-                    array.array("f", [k + x / full_width + 10 * y / full_height for x in range(x0, x1)]).tobytes()
-                )
-    os.rename(f"{path}.tmp", path)
 
 
 if __name__ == "__main__":

@@ -19,11 +19,13 @@ COMMAND = (ADDON.parents[1] / "docs" / "command.md").read_text()
 
 
 def traces() -> dict[str, object]:
-    theirs = [p for p in bpy.types.Panel.__subclasses__() if p.__module__ != panels.__name__]
+    theirs = [p for p in bpy.types.Panel.__subclasses__() if not p.__module__.startswith("wardmis.")]
     return {
         "classes": sorted(name for name in dir(bpy.types) if "WARDMIS" in name.upper()),
         "panels": sorted(p.__name__ for p in theirs if "WARDMIS" in getattr(p, "COMPAT_ENGINES", ())),
-        "scene": hasattr(bpy.types.Scene, "wardmis"),
+        "scene": any(hasattr(bpy.types.Scene, name) for name in ("wardmis", "wardmis_comparison")),
+        "window manager": hasattr(bpy.types.WindowManager, "wardmis_results"),
+        "handlers": len(bpy.app.handlers.load_pre),
         "menu": len(bpy.types.TOPBAR_MT_file_export._dyn_ui_initialize()),
     }
 
@@ -36,6 +38,7 @@ class Registration(unittest.TestCase):
             gone = traces()
             self.assertEqual((gone["classes"], gone["panels"], gone["scene"]), ([], [], False))
             self.assertEqual(gone["menu"], registered["menu"] - 1)
+            self.assertEqual((gone["window manager"], gone["handlers"]), (False, registered["handlers"] - 2))
             wardmis.register()
             self.assertEqual(traces(), registered)
 

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The command `wardmis converge` (docs/command.md) for a scene's settings. No bpy in here."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+OWN = "scene"  # the configuration that the scene's own settings are
+DEFAULT_CONFIGURATIONS = ("equal", "variance", "second-moment", "auto")
+STOPPED = 130  # the exit code of a comparison that was stopped
+
+
+@dataclass
+class Study:
+    """What is compared, and how long; the names are those of the command's options."""
+
+    configurations: Sequence[str] = DEFAULT_CONFIGURATIONS
+    seeds: int = 16
+    first_seed: int = 1
+    max_spp: int = 64
+    budget_seconds: float | None = None
+    baseline: str | None = None
+    reference: Path | None = None
+    reference_time: float | None = None
+    target: float | None = None
+    title: str = ""
+    threads: int = 0
+
+    @property
+    def checkpoints(self) -> list[int]:
+        """1, 2, 4 ... and the last."""
+        powers = [1 << k for k in range(self.max_spp.bit_length()) if 1 << k < self.max_spp]
+        return [*powers, self.max_spp]
+
+
+@dataclass
+class Outcome:
+    """Where a comparison has left what."""
+
+    folder: Path
+    scene: Path
+    manifest: Path | None = None  # of Cycles' renders
+    warnings: list[str] = field(default_factory=list)
+
+    @property
+    def report_html(self) -> Path:
+        return self.folder / "report.html"
+
+    @property
+    def report_json(self) -> Path:
+        return self.folder / "report.json"
+
+
+def arguments(study: Study, settings: Any, outcome: Outcome) -> list[str]:
+    """Of the command, without its own name. `settings`: the scene's, which hold where a configuration says nothing else."""
+    result: list[Any] = ["converge", outcome.scene, "-o", outcome.folder, "--progress", "json", "--watch-stdin"]
+    for specification in study.configurations:
+        result += ["--configuration", own_specification(settings) if specification == OWN else specification]
+    # the weights that belong to each allocation; the scene's are those of its own configuration
+    result += ["--weights", "auto", "--integrand", settings.integrand, "--integrator", settings.integrator]
+    result += ["--sampler", settings.sampler, "--samples-per-hit", settings.samples_per_hit]
+    result += ["--pilot-spp", settings.pilot_samples, "--min-fraction", f"{settings.min_fraction:.6g}"]
+    result += ["--max-depth", settings.max_depth, "--seeds", study.seeds, "--seed", study.first_seed]
+    if study.budget_seconds is not None:
+        result += ["--budget-seconds", f"{study.budget_seconds:.6g}"]
+    else:
+        result += ["--max-spp", study.max_spp]
+    for option, value in (
+        ("--baseline", study.baseline),
+        ("--reference", study.reference),
+        ("--reference-time", study.reference_time),
+        ("--target", study.target),
+        ("--title", study.title or None),
+        ("--threads", study.threads or None),
+        ("--external", outcome.manifest),
+    ):
+        if value is not None:
+            result += [option, value]
+    return [str(argument) for argument in result]
+
+
+def own_specification(settings: Any) -> str:
+    """The scene's settings as a configuration."""
+    pairs = {
+        "allocation": settings.allocation,
+        "weights": settings.weights,
+        "integrand": settings.integrand,
+        "integrator": settings.integrator,
+        "sampler": settings.sampler,
+        "samples-per-hit": settings.samples_per_hit,
+        "pilot-spp": settings.pilot_samples,
+        "min-fraction": f"{settings.min_fraction:.6g}",
+        "max-depth": settings.max_depth,
+    }
+    return f"{OWN}:" + ",".join(f"{key}={value}" for key, value in pairs.items())

@@ -1,0 +1,229 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The same scene by Cycles, in this Blender: a render for each seed and number of samples, and images to take its errors against.
+
+How long a render took: Cycles itself states, with each image, the seconds that it rendered apart from those in which it synchronised
+the scene (which includes building its BVH), cut off to hundredths. Blender's operator, and a clock around it, know the sum alone. The
+CPU time is this process', less that of renders of a single pixel with one sample, which synchronise the same scene.
+"""
+
+from __future__ import annotations
+
+import statistics
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import bpy
+
+from . import cycles_settings
+from .exr import read_header
+from .manifest import Manifest
+from .overrides import overridden
+from .scene_file import SceneFile
+
+REFERENCE_IMAGES = 4  # independent ones, so that the variance of their mean is known
+# far from any that a run has, so that nothing is compared with its own samples
+REFERENCE_SEED = 1_000_003
+CUT_OFF_SECONDS = 0.01  # Cycles states its time without what is below
+ONE_PIXEL_RENDERS = 3
+CERTAIN = 5  # a CPU time is stated where it is so many times as large as what the synchronisation varies by
+
+Progress = Callable[[dict[str, Any]], None]
+
+
+@dataclass
+class CyclesPlan:
+    seeds: list[int]
+    checkpoints: list[int]  # samples per pixel
+    reference_spp: int  # of each of the REFERENCE_IMAGES
+    as_is: bool = False
+    threads: int = 0
+    budget_seconds: float | None = None
+
+
+def render_cycles(folder: Path, scene_file: SceneFile, plan: CyclesPlan, progress: Progress) -> Path:
+    """Renders what `folder` does not hold yet; returns the manifest's path. Raises RuntimeError with a message for the user."""
+    scene, layer = bpy.context.scene, bpy.context.view_layer
+    if not hasattr(scene, "cycles"):
+        raise RuntimeError(
+            "WardMIS: Cycles is not there to be compared with: its add-on is off; turn it on in Preferences > Add-ons > Cycles Render "
+            "Engine, or compare without Cycles"
+        )
+    folder.mkdir(parents=True, exist_ok=True)
+    settings = list(cycles_settings.frame(scene, layer, scene_file.film, plan.threads))
+    if not plan.as_is:
+        settings += cycles_settings.unbiased(scene, cycles_settings.bounces_of(scene.wardmis))
+    with overridden(settings):
+        manifest = Manifest(folder / "manifest.json", _about(scene, layer, scene_file, plan), plan.reference_spp)
+        manifest.write()
+        _Renders(scene, layer, manifest, plan, progress).run()
+    return manifest.path
+
+
+def _about(scene: Any, layer: Any, scene_file: SceneFile, plan: CyclesPlan) -> dict[str, Any]:
+    different = scene_file.other_than_blenders()
+    notes = [
+        "seconds are those that Cycles states as its render time: without the synchronisation of the scene, to 0.01 s",
+        f"CPU seconds are the process', less the median of {ONE_PIXEL_RENDERS} renders of one pixel, which synchronise the same scene",
+    ]
+    if plan.as_is:
+        notes.append(
+            "Cycles' settings are the scene's own, with whatever bias they bring; only filter, frame, seed and samples are set"
+        )
+    else:
+        notes.append(
+            "clamping, filtered glossiness, light threshold, adaptive sampling, denoising, fast GI and shadow terminator offsets are off; "
+            "the first sample of Cycles' sequence, which lies in the middle of each pixel whatever the filter, is left out"
+        )
+    notes += different
+    return {
+        "name": "Cycles as set" if plan.as_is else "Cycles",
+        "renderer": f"Cycles {bpy.app.version_string}",
+        "settings": {
+            "scene_sha256": scene_file.sha256,
+            "view_layer": layer.name,
+            "device": "CPU",
+            "threads": plan.threads or "all",
+            "as_is": plan.as_is,
+            **cycles_settings.described(scene),
+        },
+        "notes": notes,
+        # as the user has them, its settings may take light away
+        "common_reference": not different and not plan.as_is,
+    }
+
+
+class _Renders:
+    def __init__(self, scene: Any, layer: Any, manifest: Manifest, plan: CyclesPlan, progress: Progress) -> None:
+        self.scene, self.layer = scene, layer
+        self.manifest, self.plan, self.progress = manifest, plan, progress
+        self.one_pixel_cpu: list[float] = []
+        self.began = time.monotonic()
+        self.work = self._work_left()
+        self.all = sum(spp for _, _, spp in self.work)
+        self.done = 0
+
+    def _work_left(self) -> list[tuple[str, int, int]]:
+        """(kind, seed, spp): two seeds first, without which there is no interval, then the reference, then the other seeds."""
+        runs = [("run", seed, spp) for seed in self.plan.seeds for spp in self.plan.checkpoints]
+        first = 2 * len(self.plan.checkpoints)
+        references = [
+            ("reference", REFERENCE_SEED + i, self.manifest.data["reference"]["spp"]) for i in range(REFERENCE_IMAGES)
+        ]
+        work = [*runs[:first], *references, *runs[first:]]
+        return [item for item in work if not self._is_there(*item)]
+
+    def _is_there(self, kind: str, seed: int, spp: int) -> bool:
+        return (
+            self.manifest.has_run(seed, spp) if kind == "run" else self.manifest.has_reference(_name(kind, seed, spp))
+        )
+
+    def run(self) -> None:
+        if not self.work:
+            return
+        self._measure_synchronisation()
+        needed = {("run", seed) for seed in self.plan.seeds[:2]}
+        unit = None  # the seed, or the reference, that is being rendered
+        for kind, seed, spp in self.work:
+            if (kind, seed) != unit and kind == "run" and (kind, seed) not in needed and self._out_of_time():
+                break  # a seed has all of its checkpoints, or is not begun
+            unit = (kind, seed)
+            self._say(kind, seed)
+            self._render(kind, seed, spp)
+            self.done += spp
+        self._say("run", self.plan.seeds[-1])
+
+    def _out_of_time(self) -> bool:
+        budget = self.plan.budget_seconds
+        return budget is not None and time.monotonic() - self.began >= budget
+
+    def _say(self, kind: str, seed: int) -> None:
+        seconds = time.monotonic() - self.began
+        fraction = self.done / self.all
+        self.progress(
+            {
+                "event": "progress",
+                "phase": "Cycles" if kind == "run" else "Cycles' reference",
+                "configuration": None,
+                "seed": seed if kind == "run" else None,
+                "done": self.done,
+                "of": self.all,
+                "fraction": fraction,
+                "seconds": seconds,
+                "left": seconds * (1 - fraction) / fraction if fraction else None,
+            }
+        )
+
+    def _measure_synchronisation(self) -> None:
+        render = self.scene.render
+        width, height = (
+            max(1, n * render.resolution_percentage // 100) for n in (render.resolution_x, render.resolution_y)
+        )
+        x, y = width // 2, height // 2
+        pixel = [
+            (render, "use_border", True),
+            (render, "border_min_x", (x + 0.25) / width),
+            (render, "border_max_x", min(1.0, (x + 1.25) / width)),
+            (render, "border_min_y", (y + 0.25) / height),
+            (render, "border_max_y", min(1.0, (y + 1.25) / height)),
+        ]
+        with overridden(pixel):
+            # the first one reads images and loads kernels
+            self.one_pixel_cpu = [self._timed(1, 0) for _ in range(1 + ONE_PIXEL_RENDERS)][1:]
+
+    def _timed(self, spp: int, seed: int) -> float:
+        """Renders; returns the CPU seconds of this process."""
+        for owner, name, value in cycles_settings.samples(self.scene, spp, seed, self.plan.as_is):
+            setattr(owner, name, value)
+        began = time.process_time()
+        try:
+            ended = bpy.ops.render.render(scene=self.scene.name, layer=self.layer.name)
+        except RuntimeError as error:
+            reason = str(error).strip().removeprefix("Error: ")
+            raise RuntimeError(
+                f"WardMIS: Cycles could not render the scene: {reason}; change what stops its own render, too"
+            ) from error
+        if "FINISHED" not in ended:
+            raise RuntimeError("WardMIS: stopped while Cycles rendered; the same comparison again goes on from there")
+        return time.process_time() - began
+
+    def _render(self, kind: str, seed: int, spp: int) -> None:
+        cpu: float | None = self._timed(spp, seed) - statistics.median(self.one_pixel_cpu)
+        if cpu is not None and cpu < CERTAIN * (max(self.one_pixel_cpu) - min(self.one_pixel_cpu)):
+            cpu = None
+        name = _name(kind, seed, spp)
+        self._save(self.manifest.path.parent / name)
+        if kind == "run":
+            self.manifest.add_run(seed, spp, name, self._stated_seconds(name), cpu)
+        else:
+            self.manifest.add_reference(name)
+
+    def _save(self, path: Path) -> None:
+        temporary = path.with_name(f".{path.name}.tmp.exr")
+        try:
+            bpy.data.images["Render Result"].save_render(str(temporary), scene=self.scene)
+            temporary.replace(path)
+        except (OSError, RuntimeError) as error:
+            raise RuntimeError(
+                f"WardMIS: Cycles' image {path} cannot be written: {str(error).strip()}; make room, or choose another output folder"
+            ) from error
+        finally:
+            temporary.unlink(missing_ok=True)
+
+    def _stated_seconds(self, name: str) -> float | None:
+        text = read_header(self.manifest.path.parent / name).text(f"cycles.{self.layer.name}.render_time")
+        return None if text is None else _clock_seconds(text) + CUT_OFF_SECONDS / 2
+
+
+def _name(kind: str, seed: int, spp: int) -> str:
+    return f"{kind}-{seed:04}-{spp:05}.exr"
+
+
+def _clock_seconds(text: str) -> float:
+    """'01:02.50', with hours in front where there are any."""
+    seconds = 0.0
+    for part in text.split(":"):
+        seconds = seconds * 60 + float(part)
+    return seconds

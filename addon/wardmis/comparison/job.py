@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A comparison in the background of a Blender that goes on to be used: processes one after the other, looked at by a timer.
+
+There is one at a time. It ends with Blender, since the processes watch their input, and when another file is loaded; what they have
+rendered stays in the folder.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import bpy
+
+from ..process import Renderer, RendererError
+from .command_line import progress_text
+from .converge import STOPPED
+
+LOOK_SECONDS = 0.25
+SHOWN_IN = {"PROPERTIES", "IMAGE_EDITOR"}
+
+
+@dataclass
+class Stage:
+    """A process that prints JSON lines and watches its input."""
+
+    name: str  # what messages call it
+    command: list[str]
+
+
+class Job:
+    def __init__(
+        self, folder: Path, stages: list[Stage], finished: Callable[[Job], None], temporary: list[Path]
+    ) -> None:
+        """`finished` is called once all has ended well, or was stopped; `temporary` are files to be removed at the end."""
+        self.folder = folder
+        self.text = "Starting"
+        self.fraction = 0.0
+        self.failure = ""  # the message for the user
+        self.stopping = False
+        self.running = True
+        self._stages = stages
+        self._finished = finished
+        self._temporary = temporary
+        self._process: Renderer | None = None
+        self._start_next()
+
+    def _start_next(self) -> None:
+        stage = self._stages.pop(0)
+        self.fraction = 0.0
+        try:
+            self._process = Renderer(stage.command, stage.name)
+        except RendererError as error:
+            self._fail(str(error))
+
+    def look(self) -> None:
+        """Takes in what has happened. Does not wait."""
+        process = self._process
+        if not self.running or process is None:
+            return
+        for event in process.events(0):
+            self._take(event)
+        if process.running():
+            return
+        if process.exit_code() == STOPPED:
+            self.stopping = True
+        else:
+            try:
+                for event in process.finish():
+                    self._take(event)
+            except RendererError as error:
+                if not self.stopping:
+                    self._fail(str(error))
+                    return
+        process.stop()
+        self._process = None
+        if self._stages and not self.stopping:
+            self._start_next()
+            return
+        self.running = False
+        self.text = "Stopped; what is done is kept, and Compare goes on from there" if self.stopping else "Done"
+        self._tidy()
+        try:
+            self._finished(self)
+        except RuntimeError as error:
+            if not self.stopping:  # else there may be no report yet
+                self.failure = str(error)
+
+    def _take(self, event: dict[str, Any]) -> None:
+        with contextlib.suppress(KeyError, TypeError, ValueError):
+            if event.get("event") == "progress":
+                self.fraction = float(event["fraction"])
+                self.text = progress_text(event)
+
+    def _fail(self, message: str) -> None:
+        self.failure = message
+        self.stop()
+
+    def cancel(self) -> None:
+        """Asks the process to end with what it has; a second time ends it."""
+        if self.stopping:
+            self.stop()
+            return
+        self.stopping = True
+        self.text = "Stopping"
+        if self._process is not None:
+            self._process.close_input()
+
+    def stop(self) -> None:
+        """Ends everything now."""
+        self.running = False
+        if self._process is not None:
+            self._process.stop()
+            self._process = None
+        self._tidy()
+
+    def _tidy(self) -> None:
+        for path in self._temporary:
+            with contextlib.suppress(OSError):
+                path.unlink()
+        self._temporary = []
+
+
+_job: Job | None = None
+
+
+def current() -> Job | None:
+    """The job that runs, or the last one of this file."""
+    return _job
+
+
+def running() -> bool:
+    return _job is not None and _job.running
+
+
+def start(folder: Path, stages: list[Stage], finished: Callable[[Job], None], temporary: list[Path]) -> Job:
+    global _job
+    if running():
+        raise RuntimeError("WardMIS: a comparison is running; wait for it, or cancel it")
+    _job = Job(folder, stages, finished, temporary)
+    if not bpy.app.timers.is_registered(_look):
+        bpy.app.timers.register(_look, first_interval=LOOK_SECONDS, persistent=True)
+    return _job
+
+
+def forget() -> None:
+    """Ends what runs, and its message."""
+    global _job
+    if _job is not None:
+        _job.stop()
+    _job = None
+    if bpy.app.timers.is_registered(_look):
+        bpy.app.timers.unregister(_look)
+
+
+def _look() -> float | None:
+    if _job is None:
+        return None
+    _job.look()
+    redraw()
+    return LOOK_SECONDS if _job.running else None
+
+
+def redraw() -> None:
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type in SHOWN_IN:
+                area.tag_redraw()
+
+
+@bpy.app.handlers.persistent
+def _on_load(*_: Any) -> None:
+    forget()
+
+
+def register() -> None:
+    bpy.app.handlers.load_pre.append(_on_load)
+
+
+def unregister() -> None:
+    forget()
+    bpy.app.handlers.load_pre.remove(_on_load)

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The renders of another renderer, as `wardmis converge --external` reads them (docs/report-format.md). No bpy in here.
+
+It is written after each render, whole, under a temporary name, so that a comparison which was stopped goes on where it was.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+
+class Manifest:
+    """The file `path`, its images beside it."""
+
+    def __init__(self, path: Path, about: dict[str, Any], reference_spp: int) -> None:
+        """`about`: name, renderer, settings, notes, common_reference. Takes over what an earlier run has rendered with it.
+
+        Raises RuntimeError where the earlier renders are of another scene or were made with other settings.
+        """
+        self.path = path
+        self.data: dict[str, Any] = {**about, "reference": {"images": [], "spp": reference_spp}, "runs": []}
+        if path.exists():
+            self._resume(_read(path))
+
+    def _resume(self, old: dict[str, Any]) -> None:
+        for key in ("renderer", "settings"):
+            if old.get(key) != self.data[key]:
+                raise RuntimeError(
+                    f"WardMIS: {self.path.parent} holds renders of another comparison: {_difference(key, old.get(key), self.data[key])}; "
+                    "choose another output folder, or delete that one"
+                )
+        self.data["runs"] = [run for run in old["runs"] if self._there(run["path"])]
+        if old["reference"]["spp"] == self.data["reference"]["spp"]:
+            self.data["reference"]["images"] = [name for name in old["reference"]["images"] if self._there(name)]
+
+    def _there(self, name: str) -> bool:
+        return (self.path.parent / name).is_file()
+
+    def has_run(self, seed: int, spp: int) -> bool:
+        return any((run["seed"], run["spp"]) == (seed, spp) for run in self.data["runs"])
+
+    def has_reference(self, name: str) -> bool:
+        return name in self.data["reference"]["images"]
+
+    def add_run(self, seed: int, spp: int, name: str, wall: float | None, cpu: float | None) -> None:
+        self.data["runs"].append({"seed": seed, "spp": spp, "path": name, "wall": wall, "cpu": cpu})
+        self.data["runs"].sort(key=lambda run: (run["seed"], run["spp"]))
+        self.write()
+
+    def add_reference(self, name: str) -> None:
+        self.data["reference"]["images"].append(name)
+        self.write()
+
+    def write(self) -> None:
+        temporary = self.path.with_name(f".{self.path.name}.{os.getpid()}.tmp")
+        try:
+            temporary.write_text(json.dumps(self.data, indent=1, ensure_ascii=False), encoding="utf-8")
+            temporary.replace(self.path)
+        finally:
+            temporary.unlink(missing_ok=True)
+
+
+def _read(path: Path) -> dict[str, Any]:
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+        data["reference"]["images"], data["reference"]["spp"], data["runs"], data["settings"]
+    except (ValueError, KeyError, TypeError) as error:
+        raise RuntimeError(
+            f"WardMIS: {path} is no list of renders ({error}); delete it to render them again"
+        ) from error
+    return data
+
+
+def _difference(key: str, old: Any, new: Any) -> str:
+    if isinstance(old, dict) and isinstance(new, dict):
+        names = [name for name in {**old, **new} if old.get(name) != new.get(name)]
+        return "; ".join(f"{name} was {old.get(name)} and is {new.get(name)}" for name in names[:3])
+    return f"{key} was {old} and is {new}"

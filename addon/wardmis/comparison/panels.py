@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The Compare panel: in the render properties, and in the Image Editor's sidebar where its images are looked at."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+
+from .. import compat
+from ..panels import RenderPanel
+from . import job, operators, properties
+
+TEXT_WIDTH = 7  # pixels of a letter, about, at a scale of the interface of 1
+
+
+def draw_progress(layout: Any) -> None:
+    current = job.current()
+    if job.running() and current is not None:
+        compat.progress_bar(layout, current.fraction, current.text)
+        layout.operator(operators.WARDMIS_OT_compare_cancel.bl_idname, icon="CANCEL")
+        return
+    row = layout.row()
+    row.scale_y = 1.3
+    row.operator(operators.WARDMIS_OT_compare.bl_idname, icon="RENDER_STILL")
+    layout.operator(operators.WARDMIS_OT_compare_open.bl_idname, icon="FILE_FOLDER")
+    if current is not None and current.failure:
+        draw_text(layout, current.failure, "ERROR")
+    elif current is not None and current.stopping:
+        draw_text(layout, current.text, "INFO")
+
+
+def draw_results(layout: Any) -> None:
+    report, chosen = properties.report(), properties.results()
+    if report is None:
+        return
+    view = operators.WARDMIS_OT_compare_view.bl_idname
+    column = layout.column(align=True)
+    column.prop(chosen, "a")
+    column.prop(chosen, "b")
+    column.prop(chosen, "top")
+    row = layout.row(align=True)
+    for name, label, _ in properties.VIEWS:
+        row.operator(view, text=label, depress=chosen.view == name).view = name
+    if chosen.failure:
+        draw_text(layout, chosen.failure, "ERROR")
+    _draw_table(layout.box(), report)
+    row = layout.row(align=True)
+    row.operator(operators.WARDMIS_OT_compare_report.bl_idname, icon="URL")
+    row.operator(view, text="Plot", icon="GRAPH").view = "PLOT"
+
+
+def _draw_table(box: Any, report: Any) -> None:
+    seconds = report.equal_seconds
+    at = f" at {seconds:.3g} s" if seconds is not None else ""
+    box.label(text=f"Ratio to {report.data.get('baseline', '')} with 95 % interval{at}")
+    grid = box.column(align=True)
+    for columns in (
+        ("", "relMSE", "Ratio", "To the target"),
+        *((r.name, r.error, r.ratio, r.verdict) for r in report.rows()),
+    ):
+        split = grid.split(factor=0.26)
+        split.label(text=columns[0])
+        rest = split.split(factor=0.22)
+        rest.label(text=columns[1])
+        rest = rest.split(factor=0.55)
+        rest.label(text=columns[2])
+        rest.label(text=columns[3])
+
+
+def draw_text(layout: Any, text: str, icon: str) -> None:
+    """Over as many lines as it needs: labels are cut off."""
+    region, scale = bpy.context.region, bpy.context.preferences.system.ui_scale
+    letters = max(20, int(region.width / (TEXT_WIDTH * scale)) - 6) if region else 60
+    lines = [""]
+    for word in text.split():
+        if lines[-1] and len(lines[-1]) + 1 + len(word) > letters:
+            lines.append("")
+        lines[-1] += f" {word}" if lines[-1] else word
+    column = layout.column(align=True)
+    for i, line in enumerate(lines):
+        column.label(text=line, icon=icon if i == 0 else "BLANK1")
+
+
+class WARDMIS_RENDER_PT_compare(RenderPanel, bpy.types.Panel):
+    bl_label = "Compare"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: Any) -> None:
+        settings = context.scene.wardmis_comparison
+        self.layout.enabled = True
+        body = self.layout.column()
+        body.enabled = not job.running()
+        body.use_property_split = True
+        body.use_property_decorate = False
+        grid = body.grid_flow(columns=2, align=True)
+        grid.use_property_split = False
+        grid.prop(settings, "allocations")
+        row = body.row()
+        row.use_property_split = False
+        row.prop(settings, "use_scene", toggle=True)
+        body.row().prop(settings, "stop_by", expand=True)
+        body.prop(settings, settings.stop_by)
+        body.prop(settings, "seeds")
+        column = body.column(heading="Cycles")
+        column.prop(settings, "use_cycles", text="Compare With")
+        sub = column.column()
+        sub.active = settings.use_cycles
+        sub.prop(settings, "cycles_as_is")
+        sub.prop(settings, "cycles_seeds")
+        body.prop(settings, "folder")
+        draw_progress(self.layout)
+        draw_results(self.layout)
+
+
+class WARDMIS_IMAGE_PT_compare(bpy.types.Panel):
+    bl_label = "Compare"
+    bl_space_type = "IMAGE_EDITOR"
+    bl_region_type = "UI"
+    bl_category = "WardMIS"
+    layout: Any
+
+    def draw(self, _context: Any) -> None:
+        self.layout.use_property_split = True
+        self.layout.use_property_decorate = False
+        draw_progress(self.layout)
+        draw_results(self.layout)
+
+
+_CLASSES = (WARDMIS_RENDER_PT_compare, WARDMIS_IMAGE_PT_compare)
+
+
+def register() -> None:
+    for cls in _CLASSES:
+        bpy.utils.register_class(cls)
+
+
+def unregister() -> None:
+    for cls in reversed(_CLASSES):
+        bpy.utils.unregister_class(cls)

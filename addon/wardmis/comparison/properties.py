@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is compared, `scene.wardmis_comparison`, and which of its results are looked at, `window_manager.wardmis_results`.
+
+The latter are no data of the file: they must neither be undone nor saved.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
+
+from ..properties import ALLOCATIONS
+from . import images
+from .converge import DEFAULT_CONFIGURATIONS
+from .report import Report
+
+STOPS = (
+    ("samples", "Samples", "Renders of 1, 2, 4 ... samples per pixel up to a number"),
+    ("seconds", "Seconds", "As many renders as a time allows; with Cycles, half of it is Cycles'"),
+)
+VIEWS = (
+    ("A", "A", "The first image"),
+    ("B", "B", "The second image"),
+    ("DIFFERENCE", "Difference", "Their relative difference in false colours, with its scale"),
+)
+
+_report: Report | None = None
+_choosing = False  # both images are being chosen
+_items: list[tuple[str, str, str]] = []  # Blender keeps no copy of the texts of a list that is made by a function
+
+
+class WARDMIS_PG_comparison(bpy.types.PropertyGroup):
+    allocations: EnumProperty(
+        name="Allocations",
+        description="The allocations to compare; all else is as in the panels above, the weights those that belong to each",
+        items=[(name, label, text, 1 << i) for i, (name, label, text) in enumerate(ALLOCATIONS)],
+        default=set(DEFAULT_CONFIGURATIONS),
+        options={"ENUM_FLAG"},
+    )
+    use_scene: BoolProperty(
+        name="Scene's Settings",
+        description="The settings in the panels above as a configuration of their own, weights included",
+        default=False,
+    )
+    stop_by: EnumProperty(name="Stop by", description="What ends the comparison", items=STOPS, default="samples")
+    samples: IntProperty(
+        name="Samples", description="The largest number of camera samples per pixel", default=64, min=1, soft_max=4096
+    )
+    seconds: FloatProperty(
+        name="Seconds",
+        description="Time for everything, the reference included",
+        default=300.0,
+        min=1.0,
+        soft_max=36000.0,
+        max=1e7,
+        precision=0,
+    )
+    seeds: IntProperty(
+        name="Seeds",
+        description="Independent renders of each configuration, which tell how sure its figures are",
+        default=16,
+        min=2,
+        soft_max=64,
+        max=10000,
+    )
+    use_cycles: BoolProperty(
+        name="Cycles",
+        description="Compare with Cycles, on the processor, in a second Blender in the background",
+        default=True,
+    )
+    cycles_seeds: IntProperty(
+        name="Seeds", description="Independent renders of Cycles", default=16, min=2, soft_max=64, max=10000
+    )
+    cycles_as_is: BoolProperty(
+        name="As Set",
+        description="Cycles with the scene's settings for it. Off: everything by which its image differs from what it "
+        "converges to (clamping, adaptive sampling, denoising ...) is off, and paths are as long as WardMIS'",
+        default=False,
+    )
+    folder: StringProperty(
+        name="Folder",
+        description="Each comparison gets a folder in it. Empty: beside the file, or in the folder for temporary files where there is none",
+        subtype="DIR_PATH",
+    )
+
+
+def _image_items(_self: Any, _context: Any) -> list[tuple[str, str, str]]:
+    return _items
+
+
+def _changed(self: Any, _context: Any) -> None:
+    """Another image was chosen."""
+    if _choosing:
+        return
+    self.failure = ""
+    try:
+        reload_images()
+    except RuntimeError as error:
+        self.failure = str(error)
+
+
+class WARDMIS_PG_results(bpy.types.PropertyGroup):
+    a: EnumProperty(name="A", description="The image WardMIS A", items=_image_items, update=_changed)
+    b: EnumProperty(name="B", description="The image WardMIS B", items=_image_items, update=_changed)
+    top: FloatProperty(
+        name="Scale",
+        description="The relative difference that has the brightest colour",
+        default=0.5,
+        min=1e-4,
+        soft_max=10.0,
+        precision=3,
+        update=_changed,
+    )
+    view: EnumProperty(name="View", description="The image that the Image Editor shows", items=VIEWS, default="A")
+    failure: StringProperty(description="Why the images could not be made")
+
+
+def results() -> Any:
+    return bpy.context.window_manager.wardmis_results
+
+
+def report() -> Report | None:
+    """The one whose results are shown."""
+    return _report
+
+
+def show_report(folder: Path) -> Report:
+    """Shows the results in `folder`, the baseline against the reference. RuntimeError if there are none."""
+    global _report, _items, _choosing
+    new = Report(folder)
+    names = new.image_names
+    if not names:
+        raise RuntimeError(f"WardMIS: {folder} has a report and no images; compare again")
+    _report, _items = new, [(name, name, "") for name in names]
+    chosen = results()
+    _choosing = True  # each of the two would load both images
+    chosen.a, chosen.b, chosen.failure = names[0], names[-1], ""
+    _choosing = False
+    reload_images()
+    return new
+
+
+def forget_report() -> None:
+    global _report, _items
+    _report, _items = None, []
+
+
+def reload_images() -> None:
+    chosen = results()
+    if _report is not None and chosen.a and chosen.b:
+        images.load(_report, chosen.a, chosen.b, chosen.top)
+
+
+@bpy.app.handlers.persistent
+def _on_load(*_: Any) -> None:
+    forget_report()  # its images were the old file's
+
+
+_CLASSES = (WARDMIS_PG_comparison, WARDMIS_PG_results)
+
+
+def register() -> None:
+    for cls in _CLASSES:
+        bpy.utils.register_class(cls)
+    bpy.types.Scene.wardmis_comparison = PointerProperty(type=WARDMIS_PG_comparison)
+    bpy.types.WindowManager.wardmis_results = PointerProperty(type=WARDMIS_PG_results)
+    bpy.app.handlers.load_pre.append(_on_load)
+
+
+def unregister() -> None:
+    forget_report()
+    bpy.app.handlers.load_pre.remove(_on_load)
+    del bpy.types.WindowManager.wardmis_results
+    del bpy.types.Scene.wardmis_comparison
+    for cls in reversed(_CLASSES):
+        bpy.utils.unregister_class(cls)

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""report.json of a comparison (docs/report-format.md), for what Blender shows of it. No bpy in here."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+SCHEMA = "wardmis-report-1"
+REFERENCE = "reference"  # its image, among those of the configurations
+VERDICTS = {"faster": "faster", "slower": "slower", "tie": "no difference found", "not reached": "target not reached"}
+
+
+@dataclass
+class Row:
+    """A configuration in words: nothing where a figure is not known."""
+
+    name: str
+    error: str = ""  # relMSE at equal time
+    ratio: str = ""  # to the baseline's, with its interval
+    verdict: str = ""  # on the time to the target
+
+
+@dataclass
+class Curve:
+    name: str
+    seconds: list[float]
+    error: list[float]
+    low: list[float]
+    high: list[float]
+
+
+class Report:
+    """Raises RuntimeError where `folder` has none that this add-on understands."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        path = folder / "report.json"
+        try:
+            self.data: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+        except OSError as error:
+            raise RuntimeError(
+                f"WardMIS: there is no report in {folder} ({error.strerror}); choose the folder of a comparison"
+            ) from error
+        except ValueError as error:
+            raise RuntimeError(f"WardMIS: {path} is damaged ({error}); compare again") from error
+        schema = self.data.get("schema") if isinstance(self.data, dict) else None
+        if schema != SCHEMA:
+            raise RuntimeError(
+                f"WardMIS: {path} is of the kind {schema}, not {SCHEMA}; compare again with this version"
+            )
+
+    @property
+    def html(self) -> Path:
+        return self.folder / "report.html"
+
+    @property
+    def configurations(self) -> list[dict[str, Any]]:
+        return self.data["configurations"]
+
+    @property
+    def image_names(self) -> list[str]:
+        """What can be looked at, the reference last."""
+        names = [c["name"] for c in self.configurations if self.image(c["name"]).is_file()]
+        return [*names, REFERENCE] if self.image(REFERENCE).is_file() else names
+
+    def image(self, name: str) -> Path:
+        return self.folder / "reference.exr" if name == REFERENCE else self.folder / "images" / f"{name}.exr"
+
+    @property
+    def equal_seconds(self) -> float | None:
+        return next((c["equal_time"]["seconds"] for c in self.configurations if c.get("equal_time")), None)
+
+    def rows(self) -> list[Row]:
+        return [_row(c) for c in self.configurations]
+
+    def curves(self) -> list[Curve]:
+        """Error against time; without what is not positive, which has no place on the scales."""
+        curves = []
+        for c in self.configurations:
+            curve = Curve(c["name"], [], [], [], [])
+            for point in c.get("curve", []):
+                wall, error = point.get("wall"), point.get(self.data.get("metric", "relmse"))
+                if wall and error and wall["mean"] > 0 and error["mean"] > 0:
+                    curve.seconds.append(wall["mean"])
+                    curve.error.append(error["mean"])
+                    # an interval may reach below zero; the band then ends where it can still be seen
+                    curve.low.append(max(error["low"], 0.1 * error["mean"]))
+                    curve.high.append(error["high"])
+            if curve.seconds:
+                curves.append(curve)
+        return curves
+
+
+def _row(c: dict[str, Any]) -> Row:
+    row = Row(c["name"])
+    equal_time = c.get("equal_time") or {}
+    if equal_time.get("relmse"):
+        row.error = f"{equal_time['relmse']['mean']:.3g}"
+    ratio = equal_time.get("ratio")
+    if ratio:
+        row.ratio = f"{ratio['mean']:.2f} ({ratio['low']:.2f} to {ratio['high']:.2f})"
+    row.verdict = VERDICTS.get(str((c.get("time_to_target") or {}).get("verdict")), "")
+    return row

@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The comparison of the current scene, from a script: `wardmis.compare(folder)`."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import bpy
+
+from ..operators import export_scene
+from ..preferences import renderer_path
+from ..process import Renderer, RendererError
+from .converge import DEFAULT_CONFIGURATIONS, STOPPED, Outcome, Study, arguments
+from .cycles import CyclesPlan, Progress, render_cycles
+from .scene_file import read_scene_file
+
+SCENE_NAME = "scene.glb"
+CYCLES_FOLDER = "cycles"
+REFERENCE_FACTOR = 8  # samples of each of Cycles' reference images, over the largest number of a run
+FEWEST_SEEDS = 2
+POLL_SECONDS = 0.2
+
+
+def compare(
+    output: str | os.PathLike[str],
+    *,
+    configurations: Sequence[str] | None = None,
+    seeds: int = 16,
+    first_seed: int = 1,
+    max_spp: int = 64,
+    budget_seconds: float | None = None,
+    cycles: bool = True,
+    cycles_seeds: int | None = None,
+    cycles_reference_spp: int | None = None,
+    as_is: bool = False,
+    baseline: str | None = None,
+    reference: str | os.PathLike[str] | None = None,
+    reference_time: float | None = None,
+    target: float | None = None,
+    title: str | None = None,
+    threads: int | None = None,
+    progress: Callable[[dict[str, Any]], None] | None = None,
+) -> Outcome:
+    """Compares configurations of WardMIS, and Cycles, on the current scene, frame and view layer; leaves everything in `output`.
+
+    configurations   as the command's --configuration; "scene" is the scene's own settings (equal, variance, second-moment, auto)
+    seeds            independent renders of each; cycles_seeds: of Cycles (as many)
+    max_spp          renders have 1, 2, 4 ... max_spp samples per pixel
+    budget_seconds   instead of max_spp; with Cycles, half of it is Cycles'
+    as_is            Cycles with the scene's settings for it, else with everything off that biases its image
+    progress         is called with each event, a dictionary as in the command's JSON lines
+    The others are the command's options (docs/command.md). The same call again goes on where the last one was stopped.
+
+    Raises RuntimeError with a message for the user.
+    """
+    scene = bpy.context.scene
+    study = Study(
+        tuple(configurations or DEFAULT_CONFIGURATIONS),
+        seeds,
+        first_seed,
+        max_spp,
+        budget_seconds,
+        baseline,
+        _absolute(reference),
+        reference_time,
+        target,
+        scene_title(scene) if title is None else title,
+        threads_of(scene) if threads is None else threads,
+    )
+    tell = progress or (lambda _event: None)
+    outcome = prepare(Path(bpy.path.abspath(os.fspath(output))).absolute(), study)
+    try:
+        command = [str(renderer_path())]  # before Cycles takes its time
+    except RendererError as error:
+        raise RuntimeError(f"WardMIS: {error}") from error
+    if cycles:
+        plan, study = divide(study, cycles_seeds, cycles_reference_spp, as_is)
+        outcome.manifest = render_cycles(outcome.folder / CYCLES_FOLDER, read_scene_file(outcome.scene), plan, tell)
+    command += arguments(study, scene.wardmis, outcome)
+    _converge(command, outcome, tell)
+    return outcome
+
+
+def prepare(folder: Path, study: Study) -> Outcome:
+    """Checks what is asked for, makes the folder and exports the scene into it."""
+    if study.seeds < FEWEST_SEEDS:
+        raise RuntimeError(
+            f"WardMIS: {study.seeds} seeds cannot tell how sure a figure is; take at least {FEWEST_SEEDS}"
+        )
+    if study.max_spp < 1:
+        raise RuntimeError(f"WardMIS: {study.max_spp} samples per pixel are none; take at least 1")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise RuntimeError(
+            f"WardMIS: the folder {folder} cannot be made: {error.strerror}; choose another output folder"
+        ) from error
+    outcome = Outcome(folder, folder / SCENE_NAME)
+    export_scene(outcome.scene)
+    return outcome
+
+
+def divide(
+    study: Study, cycles_seeds: int | None, cycles_reference_spp: int | None, as_is: bool
+) -> tuple[CyclesPlan, Study]:
+    """Cycles' part of the comparison, and WardMIS'."""
+    seeds = study.seeds if cycles_seeds is None else cycles_seeds
+    if seeds < FEWEST_SEEDS:
+        raise RuntimeError(
+            f"WardMIS: {seeds} seeds of Cycles cannot tell how sure a figure is; take at least {FEWEST_SEEDS}"
+        )
+    half = None if study.budget_seconds is None else study.budget_seconds / 2
+    plan = CyclesPlan(
+        list(range(study.first_seed, study.first_seed + seeds)),
+        study.checkpoints,
+        cycles_reference_spp or REFERENCE_FACTOR * study.max_spp,
+        as_is,
+        study.threads,
+        half,
+    )
+    return plan, dataclasses.replace(study, budget_seconds=half)
+
+
+def scene_title(scene: Any) -> str:
+    return bpy.path.display_name_from_filepath(bpy.data.filepath) if bpy.data.filepath else str(scene.name)
+
+
+def threads_of(scene: Any) -> int:
+    """As many as a render takes (engine.py); 0 is all."""
+    render = scene.render
+    return scene.wardmis.threads or (render.threads if render.threads_mode == "FIXED" else 0)
+
+
+def _absolute(path: str | os.PathLike[str] | None) -> Path | None:
+    return None if path is None else Path(bpy.path.abspath(os.fspath(path))).absolute()
+
+
+def _converge(command: list[str], outcome: Outcome, tell: Progress) -> None:
+    try:
+        with Renderer(command) as renderer:
+            while renderer.running():
+                for event in renderer.events(POLL_SECONDS):
+                    _note(event, outcome, tell)
+            if renderer.exit_code() == STOPPED:
+                raise RuntimeError(
+                    f"WardMIS: stopped; {outcome.folder} keeps what is done, and the same comparison again goes on from there"
+                )
+            for event in renderer.finish():
+                _note(event, outcome, tell)
+            if not outcome.report_json.is_file():
+                raise RendererError(f"the renderer {renderer.path} ended without a report{renderer.said()}")
+    except RendererError as error:
+        raise RuntimeError(f"WardMIS: {error}") from error
+
+
+def _note(event: dict[str, Any], outcome: Outcome, tell: Progress) -> None:
+    if event.get("event") == "warning":
+        outcome.warnings.append(str(event.get("message")))
+    tell(event)

@@ -1,0 +1,318 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The comparison in the background and what Blender shows of it. Timers and windows are none here: the tests look for themselves."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+import types
+import unittest
+from pathlib import Path
+from unittest import mock
+
+import bpy
+import numpy as np
+import wardmis
+from comparison_support import SMALL, ComparisonTest
+from support import ADDON
+from wardmis import scripting
+from wardmis.comparison import colours, images, job, operators, plot, properties
+from wardmis.comparison.exr import read_pass
+from wardmis.comparison.report import Report
+
+
+class PanelTest(ComparisonTest):
+    def setUp(self) -> None:
+        super().setUp()
+        self.addCleanup(job.forget)
+        self.addCleanup(properties.forget_report)
+        self.settings = self.scene.wardmis_comparison
+        self.settings.folder = str(self.folder)
+        self.settings.samples = self.settings.seeds = self.settings.cycles_seeds = 2
+        self.settings.use_cycles = False
+
+    def wait(self, seconds: float = 60) -> job.Job:
+        """Until the comparison has ended, as the timer would."""
+        deadline = time.monotonic() + seconds
+        while job.running():
+            self.assertLess(time.monotonic(), deadline, job.current().text)
+            job._look()
+            time.sleep(0.02)
+        return job.current()
+
+    def compare(self) -> Path:
+        self.assertEqual(bpy.ops.wardmis.compare(), {"FINISHED"})
+        done = self.wait()
+        self.assertEqual(done.failure, "")
+        return done.folder
+
+
+class Background(PanelTest):
+    def test_comparison_ends_with_images(self):
+        folder = self.compare()
+        self.assertEqual(folder.parent, self.folder)
+        report = properties.report()
+        self.assertEqual(report.folder, folder)
+        self.assertEqual(report.image_names, ["equal", "variance", "second-moment", "auto", "reference"])
+        chosen = properties.results()
+        self.assertEqual((chosen.a, chosen.b), ("equal", "reference"))
+        a = bpy.data.images[images.A]
+        self.assertEqual(tuple(a.size), (16, 8))
+        pixels = np.empty(16 * 8 * 4, np.float32)
+        a.pixels.foreach_get(pixels)
+        expected = read_pass(report.image("equal"))[::-1, :, :3]
+        np.testing.assert_allclose(pixels.reshape(8, 16, 4)[..., :3], expected, rtol=1e-6)
+        self.assertGreater(bpy.data.images[images.DIFFERENCE].size[0], 16)
+
+    def test_panel_reaches_the_command(self):
+        self.settings.allocations = {"albedo", "equal"}
+        self.settings.use_scene = True
+        self.settings.stop_by, self.settings.seconds = "seconds", 12
+        self.compare()
+        arguments = self.calls()[-1]
+        chosen = [arguments[i + 1] for i, word in enumerate(arguments) if word == "--configuration"]
+        self.assertEqual(chosen[:2], ["equal", "albedo"])
+        self.assertTrue(chosen[2].startswith("scene:"))
+        self.assertEqual(arguments[arguments.index("--budget-seconds") + 1], "12")
+        self.assertIn("--watch-stdin", arguments)
+
+    def test_with_cycles_in_a_blender_of_its_own(self):
+        self.settings.use_cycles = True
+        # as a user's Blender finds its add-ons
+        scripts = self.folder.parent / "scripts"
+        (scripts / "addons").mkdir(parents=True)
+        (scripts / "addons" / "wardmis").symlink_to(ADDON, target_is_directory=True)
+        with mock.patch.dict(os.environ, {"BLENDER_USER_SCRIPTS": str(scripts)}):
+            folder = self.compare()
+        self.assertIn("Cycles", properties.report().image_names)
+        manifest = folder / "cycles" / "manifest.json"
+        arguments = self.calls()[-1]
+        self.assertEqual(arguments[arguments.index("--external") + 1], str(manifest))
+        self.assertFalse((Path(bpy.app.tempdir) / "wardmis-comparison" / "scene.blend").exists())
+        # the scene is the user's, and has not been rendered by this Blender
+        self.assertEqual(self.scene.render.engine, "WARDMIS")
+
+    def test_same_scene_goes_on_and_a_changed_one_begins(self):
+        first = self.compare()
+        self.assertEqual(self.compare(), first)
+        self.camera.location.z = 4
+        self.assertNotEqual(self.compare(), first)
+
+    def test_one_at_a_time(self):
+        with mock.patch.dict(os.environ, {"WARDMIS_FAKE": "slow"}):
+            bpy.ops.wardmis.compare()
+            self.assertFalse(bpy.ops.wardmis.compare.poll())
+            self.assertTrue(bpy.ops.wardmis.compare_cancel.poll())
+
+    def test_cancel_asks_then_ends(self):
+        with mock.patch.dict(os.environ, {"WARDMIS_FAKE": "slow"}):
+            bpy.ops.wardmis.compare()
+        deadline = time.monotonic() + 20
+        while job.current().fraction == 0:
+            self.assertLess(time.monotonic(), deadline)
+            job._look()
+        bpy.ops.wardmis.compare_cancel()
+        done = self.wait(10)
+        self.assertEqual((done.failure, done.stopping), ("", True))
+        self.assertIn("Compare goes on from there", done.text)
+        with mock.patch.dict(os.environ, {"WARDMIS_FAKE": "hang"}):
+            bpy.ops.wardmis.compare()
+            self.started()
+            bpy.ops.wardmis.compare_cancel()
+            bpy.ops.wardmis.compare_cancel()
+        self.assertFalse(job.running())
+        self.gone()
+
+    def started(self) -> None:
+        deadline = time.monotonic() + 20
+        before = len(self.calls())
+        while len(self.calls()) <= before - 1 or not self.log.exists():
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.02)
+
+    def gone(self) -> None:
+        self.assertIsNone(job.current()._process)
+
+    def test_another_file_ends_it(self):
+        with mock.patch.dict(os.environ, {"WARDMIS_FAKE": "slow"}):
+            bpy.ops.wardmis.compare()
+        process = job.current()._process
+        self.assertTrue(process.running())
+        for handler in bpy.app.handlers.load_pre:  # loading one would take this test's scene away
+            if handler.__module__.startswith("wardmis."):
+                handler()
+        self.assertFalse(process.running())
+        self.assertIsNone(job.current())
+        self.assertIsNone(properties.report())
+
+    def test_unregistering_ends_it(self):
+        with mock.patch.dict(os.environ, {"WARDMIS_FAKE": "slow"}):
+            bpy.ops.wardmis.compare()
+        process = job.current()._process
+        wardmis.unregister()
+        wardmis.register()
+        self.assertFalse(process.running())
+        self.scene.render.engine = "WARDMIS"
+
+
+class Failures(PanelTest):
+    def test_of_the_renderer_are_shown(self):
+        with mock.patch.dict(os.environ, {"WARDMIS_FAKE": "exit3"}):
+            bpy.ops.wardmis.compare()
+            done = self.wait()
+        self.assertIn("bufferViews[0]: lies beyond the file", done.failure)
+
+    def test_of_cycles_name_it(self):
+        current = job.start(self.folder, [job.Stage("Cycles", ["/bin/false"])], operators._finished, [])
+        self.wait()
+        self.assertIn("Cycles failed (exit code 1)", current.failure)
+
+    def test_before_the_start_are_reported(self):
+        self.settings.allocations = set()
+        with self.assertRaisesRegex(RuntimeError, "nothing is chosen to be compared"):
+            bpy.ops.wardmis.compare()
+        self.settings.allocations = {"equal"}
+        self.folder.write_text("a file")
+        with self.assertRaisesRegex(RuntimeError, "cannot be written: .*choose another in the panel"):
+            bpy.ops.wardmis.compare()
+
+    def test_painted_images_are_not_lost_to_cycles(self):
+        painted = bpy.data.images.new("Painted", 4, 4)
+        painted.pixels[0] = 0.5
+        painted.use_fake_user = True
+        painted.update()
+        self.assertTrue(painted.is_dirty)
+        self.settings.use_cycles = True
+        with self.assertRaisesRegex(RuntimeError, "image 'Painted' has changes that Cycles would not see"):
+            bpy.ops.wardmis.compare()
+
+    def test_folder_without_results(self):
+        with self.assertRaisesRegex(RuntimeError, "there is no report in"):
+            bpy.ops.wardmis.compare_open(directory=str(self.folder))
+
+
+class Results(PanelTest):
+    def setUp(self) -> None:
+        super().setUp()
+        wardmis.compare(self.folder, cycles=False, **{**SMALL, "max_spp": 16})
+
+    def test_can_be_opened(self):
+        bpy.ops.wardmis.compare_open(directory=str(self.folder))
+        self.assertEqual(properties.report().folder, self.folder)
+        chosen = properties.results()
+        chosen.a, chosen.b, chosen.top = "auto", "auto", 2.0
+        self.assertEqual(chosen.failure, "")
+        self.assertIn("auto", bpy.data.images[images.A]["wardmis"])
+
+    def test_images_that_are_gone_are_named(self):
+        bpy.ops.wardmis.compare_open(directory=str(self.folder))
+        (self.folder / "images" / "variance.exr").unlink()
+        chosen = properties.results()
+        chosen.a = "variance"
+        self.assertIn("variance.exr", chosen.failure)
+
+    def test_view_turns_over(self):
+        self.assertFalse(bpy.ops.wardmis.compare_view.poll())
+        bpy.ops.wardmis.compare_open(directory=str(self.folder))
+        chosen = properties.results()
+        seen = []
+        for _ in range(4):
+            bpy.ops.wardmis.compare_view()
+            seen.append(chosen.view)
+        self.assertEqual(seen, ["B", "DIFFERENCE", "A", "B"])
+        bpy.data.images.remove(bpy.data.images[images.DIFFERENCE])
+        bpy.ops.wardmis.compare_view(view="DIFFERENCE")
+        self.assertIn(images.DIFFERENCE, bpy.data.images)
+
+    def test_no_plot_in_the_background(self):
+        self.assertFalse(plot.available())
+        bpy.ops.wardmis.compare_open(directory=str(self.folder))
+        self.assertNotIn(images.PLOT, bpy.data.images)
+        self.assertEqual(bpy.ops.wardmis.compare_view(view="PLOT"), {"CANCELLED"})
+
+    def test_table_and_curves(self):
+        report = Report(self.folder)
+        rows = report.rows()
+        self.assertEqual([r.name for r in rows], ["equal", "variance", "second-moment", "auto"])
+        self.assertEqual(rows[1].ratio, "0.80 (0.72 to 0.88)")
+        self.assertEqual((rows[0].verdict, rows[1].verdict), ("no difference found", "faster"))
+        curve = report.curves()[0]
+        self.assertEqual(len(curve.seconds), 5)
+        self.assertTrue(all(low < error < high for low, error, high in zip(curve.low, curve.error, curve.high)))
+
+    def test_figures_that_are_not_known(self):
+        report = Report(self.folder)
+        for c in report.configurations:
+            c["equal_time"], c["time_to_target"], c["curve"][0]["wall"] = None, None, None
+            c["curve"][1]["relmse"] = {"mean": -1e-4, "low": -2e-4, "high": 1e-5}
+        self.assertEqual((report.rows()[0].error, report.rows()[0].ratio, report.rows()[0].verdict), ("", "", ""))
+        self.assertEqual(len(report.curves()[0].seconds), 3)
+        self.assertIsNone(report.equal_seconds)
+
+
+class Settings(unittest.TestCase):
+    def test_every_setting_is_described_and_shown(self):
+        source = (ADDON / "comparison" / "panels.py").read_text()
+        for group in (properties.WARDMIS_PG_comparison, properties.WARDMIS_PG_results):
+            for prop in group.bl_rna.properties:
+                if prop.identifier in {"rna_type", "name"}:
+                    continue
+                self.assertTrue(prop.description, prop.identifier)
+                if prop.identifier in {"samples", "seconds"}:  # shown by the name of the choice
+                    continue
+                self.assertRegex(source, rf'"{prop.identifier}"|chosen\.{prop.identifier}\b')
+
+    def test_defaults_are_those_of_the_command(self):
+        from wardmis.comparison.converge import DEFAULT_CONFIGURATIONS, Study
+
+        defaults = properties.WARDMIS_PG_comparison.bl_rna.properties
+        self.assertEqual(set(defaults["allocations"].default_flag), set(DEFAULT_CONFIGURATIONS))
+        self.assertEqual((defaults["seeds"].default, defaults["samples"].default), (Study().seeds, Study().max_spp))
+
+
+class Colours(unittest.TestCase):
+    def test_inferno_is_matplotlibs(self):
+        expected = {
+            0.0: (0.001, 0.000, 0.014),
+            0.25: (0.342, 0.062, 0.429),
+            0.5: (0.736, 0.216, 0.330),
+            1.0: (0.988, 0.998, 0.645),
+        }
+        for t, rgb in expected.items():
+            np.testing.assert_allclose(colours.inferno(np.array([t]))[0], rgb, atol=0.03)
+
+    def test_scale_stands_beside(self):
+        values = np.full((120, 40), 0.5)
+        values[3, 4] = np.nan
+        image = colours.false_colour(values, 0.5)
+        self.assertGreater(image.shape[1], 40 + 20)
+        np.testing.assert_allclose(image[10, 10], colours.inferno(np.array(1.0)))
+        np.testing.assert_allclose(image[3, 4], colours.NOT_A_NUMBER)
+        strip = image[:, 40:]
+        self.assertGreater(strip[:, 5].sum(), strip[::-1, 5][:60].sum())
+        for top in (1e-4, 0.37, 12345.0, 1e7):
+            for height in (1, 4, 8, 333):
+                self.assertEqual(colours.false_colour(np.zeros((height, 3)), top).shape[0], height)
+
+    def test_difference(self):
+        a, b = np.full((2, 2, 4), 3.0), np.full((2, 2, 4), 1.0)
+        np.testing.assert_allclose(colours.relative_difference(a, b), 2 / 1.01)
+
+
+class Scripting(unittest.TestCase):
+    def test_name_for_scripts_in_an_extension(self):
+        other = {k: v for k, v in sys.modules.items() if k != "wardmis"}
+        with (
+            mock.patch.dict(sys.modules, other, clear=True),
+            mock.patch.object(scripting, "__package__", "bl_ext.x.wardmis"),
+        ):
+            scripting.register()
+            import wardmis as alias
+
+            self.assertIs(alias.compare, wardmis.compare)
+            self.assertIs(alias.export_scene, wardmis.export_scene)
+            self.assertIsInstance(alias, types.ModuleType)
+            scripting.unregister()
+            self.assertNotIn("wardmis", sys.modules)
+        self.assertIs(sys.modules["wardmis"], wardmis)

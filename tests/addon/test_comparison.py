@@ -1,0 +1,460 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""wardmis.compare(): what Cycles is told, what its renders leave, how a comparison goes on, and that every failure is told."""
+
+from __future__ import annotations
+
+import itertools
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+from unittest import mock
+
+import bpy
+import numpy as np
+import wardmis
+from comparison_support import SMALL, ComparisonTest
+from support import ADDON, FAKE, HERE, read_exr
+from wardmis.comparison import converge, cycles_settings
+from wardmis.comparison.exr import read_header, read_pass
+from wardmis.comparison.manifest import Manifest
+from wardmis.comparison.overrides import overridden
+from wardmis.comparison.scene_file import SceneFile, read_scene_file
+
+
+class Comparing(ComparisonTest):
+    def test_leaves_renders_and_a_report(self):
+        outcome = wardmis.compare(self.folder, **SMALL)
+        self.assertTrue(outcome.report_html.is_file() and outcome.report_json.is_file() and outcome.scene.is_file())
+        self.assertEqual(outcome.manifest, self.folder / "cycles" / "manifest.json")
+        self.assertEqual(outcome.warnings, ["this renderer is a fake"])
+        data = self.manifest()
+        self.assertEqual([(r["seed"], r["spp"]) for r in data["runs"]], [(1, 1), (1, 2), (2, 1), (2, 2)])
+        self.assertEqual((len(data["reference"]["images"]), data["reference"]["spp"]), (4, 4))
+        for name in [r["path"] for r in data["runs"]] + data["reference"]["images"]:
+            image = read_pass(outcome.manifest.parent / name)
+            self.assertEqual(image.shape, (8, 16, 4))
+            self.assertGreater(float(image[4, 8, 0]), 0)
+        self.assertEqual(sorted(p.name for p in outcome.manifest.parent.iterdir() if "tmp" in p.name), [])
+
+    def test_seeds_and_samples_give_images_of_their_own(self):
+        wardmis.compare(self.folder, **SMALL)
+        data = self.manifest()
+        names = [r["path"] for r in data["runs"]] + data["reference"]["images"]
+        images = [read_pass(self.folder / "cycles" / name)[..., :3] for name in names]
+        for i, image in enumerate(images):
+            for other in images[:i]:
+                self.assertFalse(np.array_equal(image, other))
+        # they agree with what they converge to
+        mean = np.mean([image.mean() for image in images[:4]])
+        self.assertAlmostEqual(float(images[-1].mean() / mean), 1, delta=0.1)
+
+    def test_settings_of_the_scene_reach_the_command(self):
+        settings = self.scene.wardmis
+        settings.allocation, settings.weights, settings.max_depth = "albedo", "power", 3
+        self.scene.render.threads_mode, self.scene.render.threads = "FIXED", 1
+        wardmis.compare(
+            self.folder,
+            configurations=["equal", "scene"],
+            cycles=False,
+            seeds=3,
+            first_seed=5,
+            max_spp=8,
+            title="A title",
+        )
+        arguments = self.calls()[-1]
+        pairs = dict(itertools.pairwise(arguments))
+        self.assertEqual(arguments[0], "converge")
+        self.assertEqual(pairs["--weights"], "auto")
+        self.assertTrue(pairs["--configuration"].startswith("scene:allocation=albedo,weights=power,"))
+        for option, value in (
+            ("--max-depth", "3"),
+            ("--seeds", "3"),
+            ("--seed", "5"),
+            ("--max-spp", "8"),
+            ("--title", "A title"),
+            ("--threads", "1"),
+        ):
+            self.assertEqual(pairs[option], value, option)
+        self.assertNotIn("--external", arguments)
+        self.assertFalse((self.folder / "cycles").exists())
+
+    def test_budget_is_shared_with_cycles(self):
+        wardmis.compare(self.folder, budget_seconds=0.001, cycles_seeds=5, **SMALL)
+        arguments = self.calls()[-1]
+        self.assertEqual(arguments[arguments.index("--budget-seconds") + 1], "0.0005")
+        self.assertNotIn("--max-spp", arguments)
+        # two whole seeds and the reference are what a comparison cannot do without
+        data = self.manifest()
+        self.assertEqual([(r["seed"], r["spp"]) for r in data["runs"]], [(1, 1), (1, 2), (2, 1), (2, 2)])
+        self.assertEqual(len(data["reference"]["images"]), 4)
+
+    def test_progress_is_told(self):
+        events = []
+        wardmis.compare(self.folder, progress=events.append, **SMALL)
+        phases = [e["phase"] for e in events if e["event"] == "progress"]
+        self.assertEqual(list(dict.fromkeys(phases)), ["Cycles", "Cycles' reference", "runs"])
+        for event in events:
+            if event["event"] == "progress":
+                self.assertTrue(0 <= event["fraction"] <= 1)
+        self.assertEqual(events[-1]["event"], "done")
+
+    def test_border_is_that_of_the_export(self):
+        render = self.scene.render
+        render.use_border, render.border_min_x, render.border_max_x = True, 0.25, 0.5
+        render.border_min_y, render.border_max_y = 0.0, 0.5
+        outcome = wardmis.compare(self.folder, **SMALL)
+        self.assertEqual(read_scene_file(outcome.scene).film["border"], [4, 0, 8, 4])
+        self.assertEqual(read_pass(self.folder / "cycles" / "run-0001-00001.exr").shape, (4, 4, 4))
+        self.assertFalse(render.use_crop_to_border)
+
+
+class Integrand(ComparisonTest):
+    def test_diffuse_scene_has_a_common_reference(self):
+        wardmis.compare(self.folder, **SMALL)
+        self.assertIs(self.manifest()["common_reference"], True)
+
+    def test_shiny_material_has_none(self):
+        self.make_shiny()
+        wardmis.compare(self.folder, **SMALL)
+        data = self.manifest()
+        self.assertIs(data["common_reference"], False)
+        self.assertIn("WardMIS shows Ward's reflection, Cycles Beckmann's or GGX, of material 'Plaster'", data["notes"])
+
+    def test_what_is_not_exported_has_none(self):
+        self.scene.render.use_motion_blur = True
+        wardmis.compare(self.folder, **SMALL)
+        data = self.manifest()
+        self.assertIs(data["common_reference"], False)
+        self.assertIn("motion blur is not supported; the frame is rendered at its own time", data["notes"])
+
+    def test_cycles_with_its_biases_has_none(self):
+        self.scene.cycles.use_denoising = False  # not every Blender has a denoiser
+        wardmis.compare(self.folder, as_is=True, **SMALL)
+        self.assertIs(self.manifest()["common_reference"], False)
+
+
+LOOKED_AT = [
+    "device",
+    "use_adaptive_sampling",
+    "use_denoising",
+    "sample_clamp_direct",
+    "sample_clamp_indirect",
+    "blur_glossy",
+    "light_sampling_threshold",
+    "caustics_reflective",
+    "max_bounces",
+    "diffuse_bounces",
+    "glossy_bounces",
+    "pixel_filter_type",
+    "filter_width",
+    "film_exposure",
+]
+
+
+class CyclesSettings(ComparisonTest):
+    def during_a_render(self, **options) -> dict:
+        """The settings in force while Cycles renders."""
+        seen: dict = {}
+
+        def look(_scene, *_):
+            cycles, render = self.scene.cycles, self.scene.render
+            for name in LOOKED_AT:
+                seen[name] = getattr(cycles, name)
+            seen["engine"], seen["persistent"] = render.engine, render.use_persistent_data
+
+        bpy.app.handlers.render_pre.append(look)
+        try:
+            wardmis.compare(self.folder, **SMALL, **options)
+        finally:
+            bpy.app.handlers.render_pre.remove(look)
+        return seen
+
+    def test_biases_are_off_and_the_frame_is_the_same(self):
+        settings, cycles = self.scene.wardmis, self.scene.cycles
+        settings.filter_type, settings.filter_width, settings.film_exposure = "gaussian", 2.0, 1.5
+        settings.max_depth = 4
+        cycles.sample_clamp_indirect, cycles.samples, cycles.seed = 10, 77, 5
+        self.scene.render.use_persistent_data = True
+        self.scene.render.image_settings.file_format = "PNG"
+        seen = self.during_a_render()
+        expected = {
+            "engine": "CYCLES",
+            "device": "CPU",
+            "use_adaptive_sampling": False,
+            "use_denoising": False,
+            "sample_clamp_direct": 0,
+            "sample_clamp_indirect": 0,
+            "blur_glossy": 0,
+            "light_sampling_threshold": 0,
+            "caustics_reflective": True,
+            "max_bounces": 3,
+            "diffuse_bounces": 3,
+            "glossy_bounces": 3,
+            "pixel_filter_type": "GAUSSIAN",
+            "filter_width": 2.0,
+            "film_exposure": 1.5,
+            "persistent": False,
+        }
+        self.assertEqual({name: seen[name] for name in expected}, expected)
+        # and afterwards the scene is the user's again
+        self.assertEqual((cycles.sample_clamp_indirect, cycles.samples, cycles.seed), (10, 77, 5))
+        self.assertEqual((cycles.max_bounces, cycles.filter_width, cycles.use_adaptive_sampling), (12, 1.5, True))
+        render = self.scene.render
+        self.assertEqual((render.engine, render.use_persistent_data), ("WARDMIS", True))
+        self.assertEqual(render.image_settings.file_format, "PNG")
+
+    def test_as_is_keeps_the_biases(self):
+        self.scene.cycles.sample_clamp_indirect = 10
+        self.scene.cycles.use_denoising = False
+        seen = self.during_a_render(as_is=True)
+        self.assertEqual((seen["sample_clamp_indirect"], seen["max_bounces"], seen["blur_glossy"]), (10, 12, 1))
+        self.assertEqual(seen["device"], "CPU")
+        self.assertEqual(self.manifest()["name"], "Cycles as set")
+
+    def test_bounces_are_the_depth_less_one(self):
+        settings = self.scene.wardmis
+        settings.max_depth = 8
+        self.assertEqual(cycles_settings.bounces_of(settings), 7)
+        settings.integrator = "direct"
+        self.assertEqual(cycles_settings.bounces_of(settings), 0)
+
+    def test_every_setting_exists(self):
+        film = {"filter": {"type": "box", "width": 1.0}, "exposure": 1.0}
+        later = {"media_type", "use_exr_interleave", "use_fast_gi"}
+        settings = [
+            *cycles_settings.frame(self.scene, bpy.context.view_layer, film, 2),
+            *cycles_settings.unbiased(self.scene, 7),
+        ]
+        for owner, name, _ in settings:
+            if owner in (self.scene.render, self.scene.cycles, self.scene.render.image_settings) and name not in later:
+                self.assertTrue(hasattr(owner, name), name)
+
+    def test_settings_come_back_after_a_failure(self):
+        with self.assertRaises(ZeroDivisionError), overridden([(self.scene.cycles, "seed", 99)]):
+            self.assertEqual(self.scene.cycles.seed, 99)
+            1 / 0  # noqa: B018
+        self.assertEqual(self.scene.cycles.seed, 0)
+
+
+class Times(ComparisonTest):
+    def test_are_stated_where_they_are_known(self):
+        wardmis.compare(self.folder, **SMALL)
+        for run in self.manifest()["runs"]:
+            self.assertGreaterEqual(run["wall"], 0.005)
+            self.assertLess(run["wall"], 5)
+            if run["cpu"] is not None:
+                self.assertGreater(run["cpu"], 0)
+
+    def test_cpu_time_has_no_synchronisation_in_it(self):
+        # half a million triangles to be synchronised for a few pixels: what is left of the render cannot be told from it
+        mesh = bpy.data.meshes.new("Many")
+        n = 500
+        x, y = np.meshgrid(np.linspace(-1, 1, n + 1), np.linspace(-1, 1, n + 1))
+        vertices = np.stack([x.ravel(), y.ravel(), 0 * x.ravel() - 1], axis=1)
+        corner = (np.arange(n)[:, None] * (n + 1) + np.arange(n)).ravel()
+        faces = np.stack([corner, corner + 1, corner + n + 2, corner + n + 1], axis=1)
+        mesh.from_pydata(vertices.tolist(), [], faces.tolist())
+        mesh.materials.append(self.material)
+        self.add("Many", mesh)
+        wardmis.compare(self.folder, **SMALL)
+        for run in self.manifest()["runs"]:
+            self.assertLess(run["wall"], 0.3)
+            self.assertLess(run["cpu"] or 0, 0.3)
+
+
+class Resuming(ComparisonTest):
+    def rendered(self, **options) -> int:
+        """How many images Cycles renders, those of one pixel left out."""
+        count = [0]
+
+        def look(_scene, *_):
+            count[0] += not (self.scene.render.use_border)
+
+        bpy.app.handlers.render_pre.append(look)
+        self.addCleanup(lambda: look in bpy.app.handlers.render_pre and bpy.app.handlers.render_pre.remove(look))
+        try:
+            wardmis.compare(self.folder, **{**SMALL, **options})
+        finally:
+            bpy.app.handlers.render_pre.remove(look)
+        return count[0] - 1  # the export
+
+    def test_nothing_is_rendered_twice(self):
+        self.assertEqual(self.rendered(), 8)
+        self.assertEqual(self.rendered(), 0)
+        self.assertEqual(self.rendered(cycles_seeds=3), 2)
+        (self.folder / "cycles" / "run-0002-00002.exr").unlink()
+        self.assertEqual(self.rendered(cycles_seeds=3), 1)
+        self.assertEqual(self.rendered(cycles_reference_spp=8), 4)
+
+    def test_goes_on_after_a_failure(self):
+        failing = mock.patch.object(Manifest, "add_reference", side_effect=RuntimeError("stopped"))
+        with failing, self.assertRaisesRegex(RuntimeError, "stopped"):
+            self.rendered()
+        self.assertEqual(len(self.manifest()["runs"]), 4)
+        self.assertEqual(self.rendered(), 4)
+
+    def test_another_scene_is_refused(self):
+        wardmis.compare(self.folder, **SMALL)
+        self.camera.location.z = 4
+        with self.assertRaisesRegex(
+            RuntimeError, "holds renders of another comparison: scene_sha256 was .* choose another output"
+        ):
+            wardmis.compare(self.folder, **SMALL)
+
+    def test_damaged_manifest_is_named(self):
+        (self.folder / "cycles").mkdir(parents=True)
+        (self.folder / "cycles" / "manifest.json").write_text("{}")
+        with self.assertRaisesRegex(RuntimeError, "manifest.json is no list of renders .* delete it"):
+            wardmis.compare(self.folder, **SMALL)
+
+
+class Failures(ComparisonTest):
+    def check(self, message: str, fake: str = "good", **options) -> None:
+        with mock.patch.dict(os.environ, {"WARDMIS_FAKE": fake}), self.assertRaisesRegex(RuntimeError, message):
+            wardmis.compare(self.folder, **{"cycles": False, **SMALL, **options})
+
+    def test_renderer(self):
+        self.check("the renderer failed .exit code 3.: bufferViews.0.: lies beyond the file", "exit3")
+        self.check("ended without a report", "nothing")
+        with mock.patch.dict(os.environ, {"WARDMIS_BINARY": "/nowhere"}):
+            self.check("there is no renderer at /nowhere")
+
+    def test_too_few_seeds(self):
+        self.check("1 seeds cannot tell how sure", seeds=1)
+        self.check("1 seeds of Cycles cannot tell", cycles_seeds=1, cycles=True)
+
+    def test_no_camera(self):
+        self.scene.camera = None
+        self.check("no camera")
+
+    def test_folder_that_cannot_be_made(self):
+        self.folder.parent.mkdir(exist_ok=True)
+        self.folder.write_text("a file")
+        self.check("cannot be made: File exists; choose another output folder")
+
+    def test_cycles_is_off(self):
+        import addon_utils
+
+        addon_utils.disable("cycles")
+        try:
+            self.check("Cycles is not there to be compared with: its add-on is off", cycles=True)
+        finally:
+            addon_utils.enable("cycles")
+
+
+class Files(unittest.TestCase):
+    def setUp(self) -> None:
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name)
+
+    def test_exr_of_the_renderer(self):
+        sys.path.insert(0, str(HERE))
+        from fake_files import write_exr
+
+        path = self.folder / "image.exr"
+        write_exr(
+            path, "Layer.1", {"Combined": "RGBA", "Normal": "XYZ"}, {"border": [2, 1, 12, 5], "resolution": [20, 10]}
+        )
+        channels = read_exr(path)
+        combined, normal = read_pass(path), read_pass(path, "Normal")
+        for i, letter in enumerate("RGBA"):
+            np.testing.assert_array_equal(combined[..., i], channels[f"Layer.1.Combined.{letter}"])
+        np.testing.assert_array_equal(normal[..., 2], channels["Layer.1.Normal.Z"])
+        with self.assertRaisesRegex(OSError, "has no pass 'Depth'"):
+            read_pass(path, "Depth")
+
+    def test_exr_of_blender_in_each_compression(self):
+        image = bpy.data.images.new("Test", 37, 21, alpha=True, float_buffer=True)
+        self.addCleanup(bpy.data.images.remove, image)
+        values = np.random.default_rng(1).random((21, 37, 4), np.float32)
+        values[..., 3] = 1
+        image.pixels.foreach_set(values.ravel())
+        scene = bpy.context.scene
+        settings = scene.render.image_settings
+        if hasattr(settings, "media_type"):
+            settings.media_type = "IMAGE"
+        settings.file_format, settings.color_depth, settings.color_mode = "OPEN_EXR", "32", "RGBA"
+        for codec in ("NONE", "ZIP", "ZIPS"):
+            settings.exr_codec = codec
+            path = self.folder / f"{codec}.exr"
+            image.save_render(str(path), scene=scene)
+            np.testing.assert_array_equal(read_pass(path), values[::-1])
+        settings.exr_codec = "PIZ"
+        image.save_render(str(path), scene=scene)
+        with self.assertRaisesRegex(OSError, "compressed in a way"):
+            read_pass(path)
+
+    def test_what_is_no_exr(self):
+        path = self.folder / "x.exr"
+        path.write_bytes(b"nothing")
+        with self.assertRaisesRegex(OSError, "is no OpenEXR file"):
+            read_header(path)
+
+    def test_reasons_are_short(self):
+        def material(name):
+            return {"name": name, "extensions": {"WARDMIS_scene": {"specular": {"value": [1, 1, 1]}}}}
+
+        document = {"materials": [material(n) for n in "ABCDE"], "extensions": {"WARDMIS_scene": {"notes": []}}}
+        (reason,) = SceneFile("", document).other_than_blenders()
+        self.assertTrue(reason.endswith("of material 'A', 'B', 'C' and 2 more"), reason)
+
+    def test_checkpoints(self):
+        self.assertEqual(converge.Study(max_spp=1).checkpoints, [1])
+        self.assertEqual(converge.Study(max_spp=64).checkpoints, [1, 2, 4, 8, 16, 32, 64])
+        self.assertEqual(converge.Study(max_spp=48).checkpoints, [1, 2, 4, 8, 16, 32, 48])
+
+
+class CommandLine(unittest.TestCase):
+    """In a Blender of its own, as ./dev compare starts it."""
+
+    def setUp(self) -> None:
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name)
+
+    def run_blender(self, *arguments: str) -> subprocess.CompletedProcess[str]:
+        (self.folder / "scripts" / "addons").mkdir(parents=True, exist_ok=True)
+        link = self.folder / "scripts" / "addons" / "wardmis"
+        if not link.exists():
+            link.symlink_to(ADDON, target_is_directory=True)
+        environment = {
+            "BLENDER_USER_RESOURCES": str(self.folder / "resources"),
+            "BLENDER_USER_SCRIPTS": str(self.folder / "scripts"),
+            "BLENDER_USER_CONFIG": str(self.folder / "config"),
+            "WARDMIS_BINARY": str(FAKE),
+        }
+        command = [bpy.app.binary_path, *arguments]
+        return subprocess.run(command, env={**os.environ, **environment}, capture_output=True, text=True, timeout=120)
+
+    SMALL = ("--seeds", "2", "--max-spp", "1", "--cycles-reference-spp", "1")
+    SCRIPT = str(HERE.parents[1] / "blend" / "compare.py")
+
+    def test_script(self):
+        small = "import bpy; bpy.context.scene.render.resolution_percentage = 2"
+        start = ["--background", "--factory-startup", "--addons", "wardmis", "--python-expr", small]
+        start += ["--python-exit-code", "1", "--python", self.SCRIPT, "--"]
+        done = self.run_blender(*start, "-o", str(self.folder / "out"), *self.SMALL)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn(str(self.folder / "out" / "report.html"), done.stdout)
+        self.assertNotIn("Fra:", done.stdout)
+        self.assertIn("Cycles, seed 1, 0 %", done.stderr)
+        done = self.run_blender(*start, "-o", str(self.folder / "out"), "--seeds", "1")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("error: WardMIS: 1 seeds cannot", done.stderr)
+
+    @unittest.skipUnless(hasattr(bpy.utils, "register_cli_command"), "came with Blender 4.2")
+    def test_command(self):
+        file = self.folder / "small scene.blend"
+        make = "import bpy; bpy.context.scene.render.resolution_percentage = 2; bpy.ops.wm.save_mainfile(filepath={!r})"
+        self.run_blender("--background", "--factory-startup", "--python-expr", make.format(str(file)))
+        command = ["--addons", "wardmis", "--command", "wardmis", "compare"]
+        done = self.run_blender(*command, str(file), "-o", str(self.folder / "out"), *self.SMALL)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertTrue((self.folder / "out" / "report.html").is_file())
+        done = self.run_blender(*command, str(self.folder / "none.blend"), "-o", str(self.folder / "out"))
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("none.blend", done.stderr)
