@@ -10,7 +10,6 @@
 
 #include "film/exr.h"
 #include "math/error.h"
-#include "report/converge.h"
 #include "report/flip.h"
 #include "report/provenance.h"
 #include "report/seeds.h"

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -280,7 +279,7 @@ class Study {
     Reference r;
     r.estimates = key, r.path = path, r.made = true, r.spp = referenceSpp_ * kReferenceChunks;
     r.chunks = kReferenceChunks;
-    std::vector<double> sum, squares;
+    ImageMean mean;
     for (uint32_t k = 0; k < kReferenceChunks; ++k) {
       const fs::path chunk = folder / fmt::format("chunk-{}.exr", k + 1);
       if (!fs::exists(chunk)) {
@@ -302,21 +301,9 @@ class Study {
       const ExrImage exr = readExr(chunk);
       for (const auto& [name, value] : exr.attributes)
         if (name == "wardmis:seconds") r.seconds += std::atof(value.c_str());
-      const RgbImage image = rgbOf(exr, chunk);
-      sum.resize(image.rgb.size()), squares.resize(image.rgb.size());
-      r.image.width = image.width, r.image.height = image.height;
-      for (size_t i = 0; i < sum.size(); ++i) {
-        const double v = double(image.rgb[i]);
-        sum[i] += v, squares[i] += v * v;
-      }
+      mean.add(rgbOf(exr, chunk));
     }
-    const double n = kReferenceChunks;
-    r.image.rgb.resize(sum.size()), r.variance.resize(sum.size());
-    for (size_t i = 0; i < sum.size(); ++i) {
-      const double mean = sum[i] / n;
-      r.image.rgb[i] = static_cast<float>(mean);
-      r.variance[i] = static_cast<float>(std::max(0.0, squares[i] / n - mean * mean) / (n - 1));
-    }
+    r.image = mean.mean(), r.variance = mean.variance();
     if (!fs::exists(path)) {
       ExrImage out{r.image.width, r.image.height, {}, {}};
       for (const auto& [pass, values] : {std::pair{"Combined", &r.image.rgb}, std::pair{"Variance", &r.variance}})
@@ -436,13 +423,6 @@ class Study {
 };
 
 }  // namespace
-
-std::string folderName(const std::string& name) {
-  std::string folder;
-  for (const char c : name)
-    folder += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || (c & 0x80) != 0 ? c : '_';
-  return folder.empty() ? "_" : folder;
-}
 
 Experiment measure(const BuiltScene& built, const StudyPlan& plan, const StudyObserver& observer) {
   return Study(built, plan, observer).run();

@@ -42,7 +42,4 @@ struct StudyObserver {
 // returns what is there: Experiment::complete is false.
 Experiment measure(const BuiltScene& built, const StudyPlan& plan, const StudyObserver& observer);
 
-// A configuration's name as a folder's.
-std::string folderName(const std::string& name);
-
 }  // namespace wardmis

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
+
 #include "film/exr.h"
 #include "math/error.h"
 
@@ -69,6 +72,38 @@ Run runFromJson(const json& j) {
     run.checkpoints.push_back(at);
   }
   return run;
+}
+
+std::string folderName(const std::string& name) {
+  std::string folder;
+  for (const char c : name)
+    folder += std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || (c & 0x80) != 0 ? c : '_';
+  return folder.empty() ? "_" : folder;
+}
+
+void ImageMean::add(const RgbImage& image) {
+  width_ = image.width, height_ = image.height, ++count_;
+  sum_.resize(image.rgb.size()), squares_.resize(image.rgb.size());
+  for (size_t i = 0; i < sum_.size(); ++i) {
+    const double v = double(image.rgb[i]);
+    sum_[i] += v, squares_[i] += v * v;
+  }
+}
+
+RgbImage ImageMean::mean() const {
+  RgbImage image{width_, height_, std::vector<float>(sum_.size())};
+  for (size_t i = 0; i < sum_.size(); ++i) image.rgb[i] = static_cast<float>(sum_[i] / count_);
+  return image;
+}
+
+std::vector<float> ImageMean::variance() const {
+  if (count_ < 2) return {};
+  std::vector<float> variance(sum_.size());
+  for (size_t i = 0; i < sum_.size(); ++i) {
+    const double mean = sum_[i] / count_;
+    variance[i] = static_cast<float>(std::max(0.0, squares_[i] / count_ - mean * mean) / (count_ - 1));
+  }
+  return variance;
 }
 
 RgbImage toRgb(const FilmBuffer& film) {

@@ -81,6 +81,23 @@ struct Experiment {
 nlohmann::json toJson(const Run& run);
 Run runFromJson(const nlohmann::json& j);  // throws nlohmann::json::exception
 
+// A configuration's name as a folder's.
+std::string folderName(const std::string& name);
+
+// The mean of independent images of one size, and its variance.
+class ImageMean {
+ public:
+  void add(const RgbImage& image);
+  uint32_t count() const { return count_; }
+  RgbImage mean() const;
+  std::vector<float> variance() const;  // of the mean, per value; empty with fewer than two
+
+ private:
+  int width_ = 0, height_ = 0;
+  uint32_t count_ = 0;
+  std::vector<double> sum_, squares_;
+};
+
 RgbImage toRgb(const FilmBuffer& film);
 
 // The image of a run or reference that we wrote ourselves: Combined as RGB.

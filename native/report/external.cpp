@@ -27,29 +27,6 @@ RgbImage readSized(const fs::path& path, const Experiment& e) {
   return image;
 }
 
-// The mean of independent images, and its variance.
-Reference meanOf(const std::vector<fs::path>& paths, const Experiment& e) {
-  Reference r;
-  std::vector<double> sum(3 * static_cast<size_t>(e.width) * static_cast<size_t>(e.height)), squares(sum.size());
-  for (const fs::path& path : paths) {
-    const RgbImage image = readSized(path, e);
-    for (size_t i = 0; i < sum.size(); ++i) {
-      const double v = double(image.rgb[i]);
-      sum[i] += v, squares[i] += v * v;
-    }
-  }
-  const double n = double(paths.size());
-  r.image = {e.width, e.height, std::vector<float>(sum.size())};
-  if (paths.size() > 1) r.variance.resize(sum.size());
-  for (size_t i = 0; i < sum.size(); ++i) {
-    const double mean = sum[i] / n;
-    r.image.rgb[i] = static_cast<float>(mean);
-    if (paths.size() > 1) r.variance[i] = static_cast<float>(std::max(0.0, squares[i] / n - mean * mean) / (n - 1));
-  }
-  r.chunks = static_cast<uint32_t>(paths.size());
-  return r;
-}
-
 }  // namespace
 
 void addExternal(Experiment& e, const fs::path& manifest, const std::function<void(const std::string&)>& warn) try {
@@ -74,8 +51,11 @@ void addExternal(Experiment& e, const fs::path& manifest, const std::function<vo
   if (images.empty()) throw Error(ExitCode::kFile, manifest.string() + ": \"reference\" has no images", "add two");
   if (images.size() < 2 && warn)
     warn(fmt::format("{}: one reference image: its own noise is unknown and is not subtracted", manifest.string()));
-  Reference r = meanOf(images, e);
-  r.estimates = c.name, r.path = images.front(), r.made = false;
+  ImageMean mean;
+  for (const fs::path& path : images) mean.add(readSized(path, e));
+  Reference r;
+  r.estimates = c.name, r.path = images.front(), r.chunks = mean.count();
+  r.image = mean.mean(), r.variance = mean.variance();
   r.spp = j.at("reference").value("spp", 0u) * r.chunks;
   c.reference = e.references.size();
   e.references.push_back(std::move(r));

@@ -5,9 +5,12 @@ errors at equal samples are the same everywhere; nothing is asked of times but t
 
 import csv
 import json
+import os
+import re
 import signal
 import subprocess
 import time
+from pathlib import Path
 
 import exr
 import numpy as np
@@ -26,10 +29,10 @@ def write_rgb(path, values):
 class Converge(CommandTest):
     scenes = ("teapot", "veach", "stiff-mirror")
 
-    def study(self, *options, scene="teapot", folder="study", code=0, small=True):
+    def study(self, *options, scene="teapot", folder="study", code=0, small=True, **more):
         size = ("--resolution", "48x32") if small else ()
         out = self.folder / folder
-        done = self.run_command("converge", self.scene(scene), "-o", out, *size, *map(str, options), code=code)
+        done = self.run_command("converge", self.scene(scene), "-o", out, *size, *map(str, options), code=code, **more)
         report = json.loads((out / "report.json").read_text()) if code == 0 else None
         return done, report
 
@@ -223,6 +226,28 @@ class Converge(CommandTest):
         self.quick()
         (self.folder / "study/runs/equal/seed-0002.json").write_text("{")
         self.refused(4, "converge", self.scene(), "-o", self.folder / "study", "--resolution", "48x32", "--max-spp", "8", "--seeds", "4", "-c", "equal", "-c", "second-moment", says=("seed-0002.json",))  # fmt: skip
+
+    def test_flip_is_reported_where_it_is_installed(self):
+        """The program of its authors, run by hand on the same images, says the same."""
+        flip = Path(os.environ["WARDMIS_FLIP"]) / "flip"
+        _, report = self.quick(env={**os.environ, "PATH": f"{flip.parent}:/usr/bin:/bin"})
+        self.assertEqual(report["metrics"][-1]["name"], "flip")
+        folder = self.folder / "study"
+        said = []
+        for seed in range(1, 5):
+            for name, path in (("r", folder / "reference.exr"), ("t", folder / f"runs/equal/seed-{seed:04}.exr")):
+                write_rgb(self.folder / f"{name}.exr", exr.read(path).passes["Combined"][..., :3])
+            command = [flip, "-r", "r.exr", "-t", "t.exr", "-v", "1", "-nexm", "-nerm"]
+            text = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, check=True).stdout
+            said.append(float(re.search(r"Mean: *([0-9.]+)", text)[1]))
+        self.assertAlmostEqual(self.of(report, "equal")["curve"][-1]["flip"]["mean"], np.mean(said), delta=2e-6)
+        # a program of the same name that is something else
+        other = self.folder / "bin" / "flip"
+        other.parent.mkdir()
+        other.write_text("#!/bin/sh\necho usage: flip file\n")
+        other.chmod(0o755)
+        _, report = self.quick(folder="b", env={**os.environ, "PATH": f"{other.parent}:/usr/bin:/bin"})
+        self.assertNotIn("flip", [m["name"] for m in report["metrics"]])
 
     # ---- renders of another program
 
