@@ -91,7 +91,7 @@ Measured load(const Experiment& e, size_t k) {
 
 // The reference's own share of an error; 0 where it is unknown or cannot be told.
 double floorOf(const Reference& r, const MetricInfo& metric) {
-  return metric.value == &Metrics::mse ? r.mseFloor() : metric.value == &Metrics::relMse ? r.relMseFloor() : 0;
+  return metric.value == &Metrics::mse ? r.mseFloor : metric.value == &Metrics::relMse ? r.relMseFloor : 0;
 }
 
 const MetricInfo& metricOf(double Metrics::*value) {
@@ -238,15 +238,14 @@ class Reporter {
   }
 
   json reference(const Reference& r) const {
-    return {
-        {"estimates", r.estimates},
-        {"source", r.made ? "made" : "given"},
-        {"path", r.made ? r.path.filename().string() : r.path.string()},
-        {"spp", r.spp > 0 ? json(r.spp) : json()},
-        {"seconds", r.seconds > 0 ? json(r.seconds) : json()},
-        {"chunks", r.chunks > 0 ? json(r.chunks) : json()},
-        {"floor",
-         {{"mse", r.known() ? json(r.mseFloor()) : json()}, {"relmse", r.known() ? json(r.relMseFloor()) : json()}}}};
+    return {{"estimates", r.estimates},
+            {"source", r.made ? "made" : "given"},
+            {"path", r.made ? r.path.filename().string() : r.path.string()},
+            {"spp", r.spp > 0 ? json(r.spp) : json()},
+            {"seconds", r.seconds > 0 ? json(r.seconds) : json()},
+            {"chunks", r.chunks > 0 ? json(r.chunks) : json()},
+            {"floor",
+             {{"mse", r.known() ? json(r.mseFloor) : json()}, {"relmse", r.known() ? json(r.relMseFloor) : json()}}}};
   }
 
   json curve(const Measured& m) const {
@@ -687,12 +686,12 @@ class Reporter {
       for (size_t i = 0; i < own.image.pixels(); ++i)
         for (size_t c = 0; c < 3; ++c)
           mean[c] += double(other.image.rgb[3 * i + c]), ours[c] += double(own.image.rgb[3 * i + c]);
-      const double noise = own.relMseFloor() + other.relMseFloor();
+      const double noise = own.relMseFloor + other.relMseFloor;
       json j{{"name", m.configuration->name},
              {"against", "WardMIS"},
              {"difference",
               {{"relmse", std::max(0.0, d.relMse - noise)},
-               {"mse", std::max(0.0, d.mse - own.mseFloor() - other.mseFloor())},
+               {"mse", std::max(0.0, d.mse - own.mseFloor - other.mseFloor)},
                {"mean", {{"r", mean[0] / ours[0] - 1}, {"g", mean[1] / ours[1] - 1}, {"b", mean[2] / ours[2] - 1}}}}},
              {"common", m.configuration->common},
              {"agree", nullptr}};

@@ -255,9 +255,10 @@ class Study {
       for (size_t c = 0; c < 3; ++c)
         has = has && (v[c] = exr.channel(fmt::format("{}.Variance.{}", kLayer, "RGB"[c]))) != nullptr;
       if (has) {
-        r.variance.resize(r.image.rgb.size());
+        std::vector<float> variance(r.image.rgb.size());
         for (size_t i = 0; i < r.image.pixels(); ++i)
-          for (size_t c = 0; c < 3; ++c) r.variance[3 * i + c] = (*v[c])[i];
+          for (size_t c = 0; c < 3; ++c) variance[3 * i + c] = (*v[c])[i];
+        r.setVariance(std::move(variance));
       }
     }
     if (!r.known() && observer_.warn)
@@ -303,7 +304,8 @@ class Study {
         if (name == "wardmis:seconds") r.seconds += std::atof(value.c_str());
       mean.add(rgbOf(exr, chunk));
     }
-    r.image = mean.mean(), r.variance = mean.variance();
+    r.image = mean.mean();
+    r.setVariance(mean.variance());
     if (!fs::exists(path)) {
       ExrImage out{r.image.width, r.image.height, {}, {}};
       for (const auto& [pass, values] : {std::pair{"Combined", &r.image.rgb}, std::pair{"Variance", &r.variance}})

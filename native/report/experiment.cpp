@@ -13,17 +13,14 @@ namespace wardmis {
 
 using nlohmann::json;
 
-double Reference::mseFloor() const {
-  double sum = 0;
-  for (const float v : variance) sum += double(v);
-  return variance.empty() ? 0 : sum / double(variance.size());
-}
-
-double Reference::relMseFloor() const {
-  double sum = 0;
-  for (size_t i = 0; i < variance.size(); ++i)
-    sum += double(variance[i]) / (double(image.rgb[i]) * double(image.rgb[i]) + kRelMseEpsilon);
-  return variance.empty() ? 0 : sum / double(variance.size());
+void Reference::setVariance(std::vector<float> v) {
+  variance = std::move(v);
+  mseFloor = relMseFloor = 0;
+  for (size_t i = 0; i < variance.size(); ++i) {
+    mseFloor += double(variance[i]) / double(variance.size());
+    relMseFloor +=
+        double(variance[i]) / (double(image.rgb[i]) * double(image.rgb[i]) + kRelMseEpsilon) / double(variance.size());
+  }
 }
 
 json toJson(const Run& run) {

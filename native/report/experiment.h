@@ -54,8 +54,10 @@ struct Reference {
   std::vector<float> variance;  // of the image, per value; empty if unknown
   uint32_t spp = 0, chunks = 0;
   double seconds = 0;
+  double mseFloor = 0, relMseFloor = 0;  // its variance's share of an error; 0 where unknown
+
   bool known() const { return !variance.empty(); }
-  double mseFloor() const, relMseFloor() const;  // 0 where unknown
+  void setVariance(std::vector<float> v);  // once there is the image
 };
 
 struct Experiment {

@@ -55,7 +55,8 @@ void addExternal(Experiment& e, const fs::path& manifest, const std::function<vo
   for (const fs::path& path : images) mean.add(readSized(path, e));
   Reference r;
   r.estimates = c.name, r.path = images.front(), r.chunks = mean.count();
-  r.image = mean.mean(), r.variance = mean.variance();
+  r.image = mean.mean();
+  r.setVariance(mean.variance());
   r.spp = j.at("reference").value("spp", 0u) * r.chunks;
   c.reference = e.references.size();
   e.references.push_back(std::move(r));

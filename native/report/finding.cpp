@@ -60,6 +60,7 @@ std::vector<std::string> finding(const json& r) {
   if (r["configurations"].size() > 1) {
     std::sort(faster.begin(), faster.end());
     std::vector<std::string> texts;
+    texts.reserve(faster.size());
     for (const auto& [ratio, text] : faster) texts.push_back(text);
     if (!faster.empty())
       said.push_back(fmt::format(
