@@ -31,9 +31,10 @@ std::vector<std::string> finding(const json& r) {
   const std::string metric = r["metric"] == "relmse" ? "relMSE" : "relMSE without the largest 0.1 %";
   const char* key = r["metric"] == "relmse" ? "relmse" : "relmse_trimmed";
   std::vector<std::string> slower, ties, unreached, biased, heavy;
-  std::vector<std::pair<double, std::string>> faster;
-  double best = 1;
-  std::string bestName, target;
+  std::vector<std::pair<double, std::string>> faster;  // by ratio
+  double secondLow = 1;                                // lower end of the intervals of all but the best
+  json best;
+  std::string target;
   for (const json& c : r["configurations"]) {
     const std::string name = c["name"];
     if (c["bias"].is_object() && c["bias"]["verdict"] == "biased") biased.push_back(name);
@@ -45,48 +46,52 @@ std::vector<std::string> finding(const json& r) {
       unreached.push_back(name);
       continue;
     }
-    const std::string text = fmt::format("{} in {}", name, interval(t["ratio"]));
-    if (t["verdict"] == "faster") {
-      faster.emplace_back(t["ratio"]["mean"], text);
-      if (faster.back().first < best) best = faster.back().first, bestName = name;
-    } else if (t["verdict"] == "slower") {
-      slower.push_back(text);
-    } else {
-      ties.push_back(fmt::format("{} ({})", name, interval(t["ratio"])));
+    const std::string text = fmt::format("{} {}", name, interval(t["ratio"]));
+    (t["verdict"] == "slower" ? slower : ties).push_back(text);
+    if (t["verdict"] != "faster") continue;
+    ties.pop_back();
+    faster.emplace_back(t["ratio"]["mean"], text);
+    const json* other = &c;
+    if (best.is_null() || t["ratio"]["mean"] < best["time_to_target"]["ratio"]["mean"]) {
+      if (!best.is_null()) secondLow = std::min(secondLow, best["time_to_target"]["ratio"]["low"].get<double>());
+      best = c, other = nullptr;
     }
+    if (other != nullptr) secondLow = std::min(secondLow, t["ratio"]["low"].get<double>());
   }
   const size_t seeds = r["seeds"].size();
+  const std::string title = r["title"];
   const char* clock = r["clock"] == "cpu" ? "processor time" : "time";
   if (r["configurations"].size() > 1) {
     std::sort(faster.begin(), faster.end());
     std::vector<std::string> texts;
     texts.reserve(faster.size());
     for (const auto& [ratio, text] : faster) texts.push_back(text);
-    if (!faster.empty())
-      said.push_back(fmt::format(
-          "On {}, {} is the fastest to a {} of {}. Of the {} that {} takes, {} (95 % intervals over {} seeds).",
-          r["title"].get<std::string>(), bestName, metric, target, clock, base,
-          list(texts) + (texts.size() > 1 ? " reach it" : " reaches it"), seeds));
-    else
+    if (!faster.empty()) {
+      said.push_back(
+          fmt::format("On {}, a {} of {} is reached sooner than by {}, in this share of its {} (95 % intervals "
+                      "over {} seeds): {}.",
+                      title, metric, target, base, clock, seeds, list(texts)));
+      if (faster.size() > 1 && best["time_to_target"]["ratio"]["high"] < secondLow)
+        said.push_back(fmt::format("The fastest is {}.", best["name"].get<std::string>()));
+    } else {
       said.push_back(
           fmt::format("On {}, no configuration reaches a {} of {} sooner than {} (95 % intervals over {} seeds).",
-                      r["title"].get<std::string>(), metric, target, base, seeds));
+                      title, metric, target, base, seeds));
+    }
     if (!ties.empty()) said.push_back(fmt::format("No difference from {} is found for {}.", base, list(ties)));
-    if (!slower.empty()) said.push_back(fmt::format("Slower: {} of its time.", list(slower)));
+    if (!slower.empty()) said.push_back(fmt::format("Slower than {}: {}.", base, list(slower)));
     if (!unreached.empty())
       said.push_back(fmt::format("Within its samples, {} did not reach that error.", list(unreached)));
   } else {
     const json& curve = r["configurations"][0]["curve"];
     const json& last = curve.back();
-    said.push_back(fmt::format("On {}, {} reaches a {} of {} after {} s ({} samples per pixel, {} seeds).",
-                               r["title"].get<std::string>(), base, metric, number(last[key]["mean"]),
-                               number(last["wall"]["mean"]), last["spp"].get<int>(), seeds));
+    said.push_back(fmt::format("On {}, {} reaches a {} of {} after {} s ({} samples per pixel, {} seeds).", title, base,
+                               metric, number(last[key]["mean"]), number(last["wall"]["mean"]), last["spp"].get<int>(),
+                               seeds));
   }
-  for (const json& c : r["configurations"]) {
-    if (c["name"] != bestName || !c["equal_samples"].is_object() || !c["equal_samples"]["ratio"].is_object()) continue;
-    said.push_back(fmt::format("At equal samples the error of {} is {} of that of {}.", bestName,
-                               interval(c["equal_samples"]["ratio"]), base));
-  }
+  if (!best.is_null() && best["equal_samples"].is_object() && best["equal_samples"]["ratio"].is_object())
+    said.push_back(fmt::format("At equal samples the error of {} is {} of that of {}.", best["name"].get<std::string>(),
+                               interval(best["equal_samples"]["ratio"]), base));
   if (!biased.empty())
     said.push_back(fmt::format(
         "The mean over the seeds differs from the reference for {}: its error does not vanish with more samples.",
