@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""wardmis.compare() with the real Cycles and the real renderer: a diffuse scene, where both have the same integrand, has one
+reference and both agree with it; a glossy one has two, and the difference of the models is no error."""
+
+import json
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import blender
+from blender import ROOT
+
+COMPARE = """
+import sys
+folder, scene, *names = sys.argv[sys.argv.index("--") + 1 :]
+sys.path[:0] = [folder]
+import bpy, wardmis
+if scene.endswith(".blend"):
+    bpy.ops.wm.open_mainfile(filepath=scene, load_ui=False)
+else:
+    sys.path[:0] = [names[0]]
+    import cycles_scenes
+    cycles_scenes.make(scene)
+render = bpy.context.scene.render
+render.resolution_x, render.resolution_y, render.resolution_percentage = 72, 48, 100
+wardmis.compare(folder + "/study", configurations=["equal", "auto"], max_spp=16, seeds=6, cycles_reference_spp=1024)
+"""
+
+
+class Compare(unittest.TestCase):
+    def compare(self, scene):
+        temporary = tempfile.TemporaryDirectory(prefix="vergleich ü ")
+        self.addCleanup(temporary.cleanup)
+        here = Path(__file__).parent
+        blender.run(
+            "--factory-startup", "--python-exit-code", "1", "--python-expr", COMPARE, "--", temporary.name, scene, here
+        )
+        self.folder = Path(temporary.name) / "study"
+        return json.loads((self.folder / "report.json").read_text())
+
+    def test_a_diffuse_scene_has_one_reference_and_both_agree_with_it(self):
+        report = self.compare("areas")
+        (model,) = report["models"]
+        self.assertTrue(model["common"], model)
+        self.assertIs(model["agree"], True, model)
+        for c in report["configurations"]:
+            self.assertEqual(c["bias"]["verdict"], "none found", c["bias"])
+            self.assertEqual([at["spp"] for at in c["curve"]], [1, 2, 4, 8, 16])
+        cycles = report["configurations"][-1]
+        self.assertTrue(cycles["renderer"].startswith("Cycles"))
+        self.assertEqual(cycles["reference"], report["configurations"][0]["reference"])
+        self.assertLess(cycles["curve"][-1]["relmse"]["mean"], cycles["curve"][0]["relmse"]["mean"] / 4)
+
+    def test_a_glossy_scene_has_two(self):
+        report = self.compare(str(ROOT / "blend" / "veach.blend"))
+        (model,) = report["models"]
+        self.assertFalse(model["common"])
+        self.assertIsNone(model["agree"])
+        self.assertGreater(model["difference"]["relmse"], 1e-3)
+        self.assertIn("not an error", model["text"])
+        self.assertEqual(report["configurations"][-1]["bias"]["verdict"], "none found")
+        notes = " ".join(report["configurations"][-1]["notes"])
+        self.assertIn("synchronisation", notes)
+
+    def test_by_the_script(self):
+        """./dev compare, as it is documented."""
+        with tempfile.TemporaryDirectory() as folder:
+            out = Path(folder) / "study"
+            command = [
+                ROOT / "dev",
+                "compare",
+                "blend/teapot.blend",
+                "-o",
+                out,
+                "--max-spp",
+                "2",
+                "--seeds",
+                "2",
+                "-c",
+                "equal",
+                "--no-cycles",
+            ]
+            done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, stdin=subprocess.DEVNULL)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            self.assertTrue((out / "report.html").is_file())
+            self.assertIn("report.html", done.stdout)
+            done = subprocess.run(
+                [ROOT / "dev", "compare", "none.blend", "-o", out],
+                cwd=ROOT,
+                capture_output=True,
+                text=True,
+                stdin=subprocess.DEVNULL,
+            )
+            self.assertNotEqual(done.returncode, 0)
+            self.assertIn("none.blend", done.stderr)
