@@ -17,9 +17,9 @@ import wardmis
 from comparison_support import SMALL, ComparisonTest
 from support import ADDON
 from wardmis import scripting
-from wardmis.comparison import colours, images, job, operators, plot, properties
+from wardmis.comparison import colours, images, job, operators, panels, plot, properties
 from wardmis.comparison.exr import read_pass
-from wardmis.comparison.report import Report
+from wardmis.comparison.report import VERDICTS, Report
 
 
 class PanelTest(ComparisonTest):
@@ -235,10 +235,13 @@ class Results(PanelTest):
         report = Report(self.folder)
         rows = report.rows()
         self.assertEqual([r.name for r in rows], ["equal", "variance", "second-moment", "auto"])
-        self.assertEqual(rows[1].ratio, "0.80 (0.72 to 0.88)")
-        self.assertEqual((rows[0].verdict, rows[1].verdict), ("no difference found", "faster"))
+        self.assertEqual(rows[1].ratio, "0.80 (0.72–0.88)")
+        self.assertEqual((rows[0].verdict, rows[1].verdict), ("", "faster"))
+        self.assertEqual(report.metric, "relMSE")
         curve = report.curves()[0]
         self.assertEqual(len(curve.seconds), 5)
+        report.data["clock"] = "cpu"
+        self.assertEqual(report.curves()[0].seconds[0], 2 * curve.seconds[0])
         self.assertTrue(all(low < error < high for low, error, high in zip(curve.low, curve.error, curve.high)))
 
     def test_figures_that_are_not_known(self):
@@ -249,6 +252,7 @@ class Results(PanelTest):
         self.assertEqual((report.rows()[0].error, report.rows()[0].ratio, report.rows()[0].verdict), ("", "", ""))
         self.assertEqual(len(report.curves()[0].seconds), 3)
         self.assertIsNone(report.equal_seconds)
+        self.assertIsNone(report.target)
 
 
 class Settings(unittest.TestCase):
@@ -269,6 +273,11 @@ class Settings(unittest.TestCase):
         defaults = properties.WARDMIS_PG_comparison.bl_rna.properties
         self.assertEqual(set(defaults["allocations"].default_flag), set(DEFAULT_CONFIGURATIONS))
         self.assertEqual((defaults["seeds"].default, defaults["samples"].default), (Study().seeds, Study().max_spp))
+
+    def test_every_verdict_has_a_sign(self):
+        self.assertEqual(set(panels.VERDICT_ICONS), set(VERDICTS.values()))
+        known = bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items.keys()
+        self.assertLessEqual(set(panels.VERDICT_ICONS.values()), set(known))
 
 
 class Colours(unittest.TestCase):

@@ -108,7 +108,7 @@ def show(folder: Path) -> None:
     report = properties.show_report(folder)
     curves = report.curves()
     if plot.available() and curves:
-        drawn = plot.draw(curves, str(report.data.get("title", "")), str(report.data.get("metric", "relmse")))
+        drawn = plot.draw(curves, str(report.data.get("title", "")), report.metric, report.clock)
         images.put(images.PLOT, drawn, "error against time", srgb=True)
     _put_into_editors(properties.results().view)
 

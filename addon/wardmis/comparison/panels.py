@@ -11,6 +11,12 @@ from .. import compat
 from ..panels import RenderPanel
 from . import job, operators, properties
 
+VERDICT_ICONS = {
+    "faster": "CHECKMARK",
+    "slower": "X",
+    "no difference found": "REMOVE",
+    "target not reached": "QUESTION",
+}
 TEXT_WIDTH = 7  # pixels of a letter, about, at a scale of the interface of 1
 
 
@@ -52,20 +58,28 @@ def draw_results(layout: Any) -> None:
 
 def _draw_table(box: Any, report: Any) -> None:
     seconds = report.equal_seconds
-    at = f" at {seconds:.3g} s" if seconds is not None else ""
-    box.label(text=f"Ratio to {report.data.get('baseline', '')} with 95 % interval{at}")
+    if seconds is not None:
+        kind = " of CPU time" if report.clock == "cpu" else ""
+        box.label(text=f"After {seconds:.3g} s{kind}, ratio to {report.data.get('baseline', '')} (95 %)")
+    rows = report.rows()
     grid = box.column(align=True)
-    for columns in (
-        ("", "relMSE", "Ratio", "To the target"),
-        *((r.name, r.error, r.ratio, r.verdict) for r in report.rows()),
-    ):
-        split = grid.split(factor=0.26)
-        split.label(text=columns[0])
-        rest = split.split(factor=0.22)
-        rest.label(text=columns[1])
-        rest = rest.split(factor=0.55)
-        rest.label(text=columns[2])
-        rest.label(text=columns[3])
+    _draw_row(grid, "", report.metric, "Ratio", "BLANK1")
+    for row in rows:
+        _draw_row(grid, row.name, row.error, row.ratio, VERDICT_ICONS.get(row.verdict, "BLANK1"))
+    legend = box.column(align=True)
+    legend.active = False
+    target = report.target
+    for verdict, icon in VERDICT_ICONS.items():
+        if any(row.verdict == verdict for row in rows):
+            legend.label(text=f"{report.metric} {target:.3g}: {verdict}" if target is not None else verdict, icon=icon)
+
+
+def _draw_row(grid: Any, name: str, error: str, ratio: str, icon: str) -> None:
+    split = grid.split(factor=0.42)
+    split.label(text=name, icon=icon)
+    split = split.split(factor=0.35)
+    split.label(text=error)
+    split.label(text=ratio)
 
 
 def draw_text(layout: Any, text: str, icon: str) -> None:
@@ -88,7 +102,6 @@ class WARDMIS_RENDER_PT_compare(RenderPanel, bpy.types.Panel):
 
     def draw(self, context: Any) -> None:
         settings = context.scene.wardmis_comparison
-        self.layout.enabled = True
         body = self.layout.column()
         body.enabled = not job.running()
         body.use_property_split = True
