@@ -46,43 +46,40 @@ def draw_results(layout: Any) -> None:
     column.prop(chosen, "b")
     column.prop(chosen, "top")
     row = layout.row(align=True)
-    for name, label, _ in properties.VIEWS:
+    for name, label in (("A", "A"), ("B", "B"), ("DIFFERENCE", "Diff")):
         row.operator(view, text=label, depress=chosen.view == name).view = name
     if chosen.failure:
         draw_text(layout, chosen.failure, "ERROR")
     _draw_table(layout.box(), report)
-    row = layout.row(align=True)
-    row.operator(operators.WARDMIS_OT_compare_report.bl_idname, icon="URL")
-    row.operator(view, text="Plot", icon="GRAPH").view = "PLOT"
+    column = layout.column(align=True)
+    column.operator(view, text="Plot", icon="GRAPH").view = "PLOT"
+    column.operator(operators.WARDMIS_OT_compare_report.bl_idname, icon="URL")
 
 
 def _draw_table(box: Any, report: Any) -> None:
-    seconds = report.equal_seconds
+    """Two lines a configuration: the sidebar is narrow."""
+    seconds, target, rows = report.equal_seconds, report.target, report.rows()
     if seconds is not None:
         kind = " of CPU time" if report.clock == "cpu" else ""
-        box.label(text=f"After {seconds:.3g} s{kind}, ratio to {report.data.get('baseline', '')} (95 %)")
-    rows = report.rows()
-    grid = box.column(align=True)
-    _draw_row(grid, "", report.metric, "Ratio", "BLANK1")
+        baseline = report.data.get("baseline", "")
+        draw_text(box, f"{report.metric} after {seconds:.3g} s{kind}; its ratio to that of {baseline}, 95 %:")
+    table = box.column(align=True)
     for row in rows:
-        _draw_row(grid, row.name, row.error, row.ratio, VERDICT_ICONS.get(row.verdict, "BLANK1"))
+        line = table.row()
+        line.label(text=row.name, icon=VERDICT_ICONS.get(row.verdict, "BLANK1"))
+        value = line.row()
+        value.alignment = "RIGHT"
+        value.label(text=row.error)
+        if row.ratio:
+            table.label(text=f"× {row.ratio}", icon="BLANK1")
     legend = box.column(align=True)
     legend.active = False
-    target = report.target
     for verdict, icon in VERDICT_ICONS.items():
         if any(row.verdict == verdict for row in rows):
-            legend.label(text=f"{report.metric} {target:.3g}: {verdict}" if target is not None else verdict, icon=icon)
+            legend.label(text=f"to {target:.3g}: {verdict}" if target is not None else verdict, icon=icon)
 
 
-def _draw_row(grid: Any, name: str, error: str, ratio: str, icon: str) -> None:
-    split = grid.split(factor=0.42)
-    split.label(text=name, icon=icon)
-    split = split.split(factor=0.35)
-    split.label(text=error)
-    split.label(text=ratio)
-
-
-def draw_text(layout: Any, text: str, icon: str) -> None:
+def draw_text(layout: Any, text: str, icon: str = "NONE") -> None:
     """Over as many lines as it needs: labels are cut off."""
     region, scale = bpy.context.region, bpy.context.preferences.system.ui_scale
     letters = max(20, int(region.width / (TEXT_WIDTH * scale)) - 6) if region else 60
@@ -93,7 +90,7 @@ def draw_text(layout: Any, text: str, icon: str) -> None:
         lines[-1] += f" {word}" if lines[-1] else word
     column = layout.column(align=True)
     for i, line in enumerate(lines):
-        column.label(text=line, icon=icon if i == 0 else "BLANK1")
+        column.label(text=line, icon=icon if i == 0 or icon == "NONE" else "BLANK1")
 
 
 class WARDMIS_RENDER_PT_compare(RenderPanel, bpy.types.Panel):
