@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "report/compare.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -10,6 +8,8 @@
 #include "cli/options.h"
 #include "cli/paths.h"
 #include "cli/verbs.h"
+#include "report/difference.h"
+#include "report/metrics.h"
 
 namespace wardmis {
 
@@ -53,6 +53,7 @@ Verb addCompare(CLI::App& app) {
                                         {"relmse", e.relMse},
                                         {"relmse_without_top_0.1_percent", e.relMseTrimmed},
                                         {"mape", e.mape},
+                                        {"smape", e.smape},
                                         {"relmse_epsilon", kRelMseEpsilon},
                                         {"mape_epsilon", kMapeEpsilon},
                                         {"pass", pass}}
@@ -62,6 +63,7 @@ Verb addCompare(CLI::App& app) {
       fmt::print("relMSE   {:.6g}   mean (x - r)^2 / (r^2 + {})\n", e.relMse, kRelMseEpsilon);
       fmt::print("         {:.6g}   without the pixels of the largest 0.1 %\n", e.relMseTrimmed);
       fmt::print("MAPE     {:.6g}   mean |x - r| / (|r| + {})\n", e.mape, kMapeEpsilon);
+      fmt::print("SMAPE    {:.6g}   mean 2 |x - r| / (|x| + |r| + {})\n", e.smape, kMapeEpsilon);
       if (!pass) fmt::print("relMSE is above {}\n", o->maxRelMse);
     }
     return pass ? 0 : 1;

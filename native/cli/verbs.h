@@ -12,6 +12,7 @@ using Verb = std::function<int()>;
 Verb addRender(CLI::App& app);
 Verb addInfo(CLI::App& app);
 Verb addCompare(CLI::App& app);
+Verb addConverge(CLI::App& app);
 Verb addStudy(CLI::App& app);
 Verb addEval(CLI::App& app);
 Verb addStability(CLI::App& app);

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "film/exr.h"
 
+#include <IexBaseExc.h>
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStdIO.h>
 #include <OpenEXR/ImfStringAttribute.h>
@@ -41,6 +43,28 @@ std::string encode(const ExrImage& image, bool compress) {
 }
 
 }  // namespace
+
+ExrImage readExr(const std::filesystem::path& path) try {
+  Imf::InputFile file(path.c_str());
+  const Imath::Box2i window = file.header().dataWindow();
+  ExrImage image{window.max.x - window.min.x + 1, window.max.y - window.min.y + 1, {}, {}};
+  const size_t width = static_cast<size_t>(image.width), count = width * static_cast<size_t>(image.height);
+  const Imf::ChannelList& channels = file.header().channels();
+  for (auto c = channels.begin(); c != channels.end(); ++c)
+    image.channels.push_back({c.name(), std::vector<float>(count)});
+  Imf::FrameBuffer frame;
+  for (ExrChannel& c : image.channels)
+    frame.insert(c.name, Imf::Slice::Make(Imf::FLOAT, c.values.data(), window, sizeof(float), sizeof(float) * width));
+  file.setFrameBuffer(frame);
+  file.readPixels(window.min.y, window.max.y);
+  for (auto a = file.header().begin(); a != file.header().end(); ++a)
+    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&a.attribute()))
+      image.attributes.emplace_back(a.name(), text->value());
+  return image;
+} catch (const Iex::BaseExc& e) {
+  throw Error(ExitCode::kFile, fmt::format("{}: cannot be read as OpenEXR: {}", path.string(), e.what()),
+              "the file may be damaged; delete it, or give another");
+}
 
 void writeExr(const std::filesystem::path& path, const ExrImage& image, bool compress) {
   std::string bytes;

@@ -18,10 +18,20 @@ struct ExrImage {
   int width = 0, height = 0;
   std::vector<ExrChannel> channels;
   std::vector<std::pair<std::string, std::string>> attributes;
+
+  // nullptr if there is no such channel.
+  const std::vector<float>* channel(const std::string& name) const {
+    for (const ExrChannel& c : channels)
+      if (c.name == name) return &c.values;
+    return nullptr;
+  }
 };
 
 // Writes under a temporary name beside `path`, then renames. compress: lossless ZIP, else none.
 // Throws Error(kFile); then no file of either name is left.
 void writeExr(const std::filesystem::path& path, const ExrImage& image, bool compress);
+
+// All channels of the first part, as floats. Throws Error(kFile).
+ExrImage readExr(const std::filesystem::path& path);
 
 }  // namespace wardmis

@@ -5,29 +5,34 @@
 
 namespace wardmis {
 
-std::vector<Fractions> Pilot::fractions(Allocation rule, Integrand integrand, TechniqueMask available, float minimum,
-                                        const Fractions& cost) const {
+std::pair<HitMoments, CandidateSums> Pilot::smoothed(int x, int y) const {
   constexpr int kRadius = 3;         // 7 x 7 pixels
   constexpr float kSameFace = 0.9f;  // cos of the largest turn of the normal that still is "the same surface"
+  const PilotPixel& center = pixels[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)];
+  HitMoments m;
+  CandidateSums sums;
+  for (int v = std::max(0, y - kRadius); v <= std::min(height - 1, y + kRadius); ++v)
+    for (int u = std::max(0, x - kRadius); u <= std::min(width - 1, x + kRadius); ++u) {
+      const size_t neighbour = static_cast<size_t>(v) * static_cast<size_t>(width) + static_cast<size_t>(u);
+      const PilotPixel& q = pixels[neighbour];
+      if (q.material != center.material || q.placement != center.placement || dot(q.normal, center.normal) < kSameFace)
+        continue;
+      m.specular += q.moments.specular;
+      m.diffuse += q.moments.diffuse;
+      if (!candidates.empty()) sums += candidates[neighbour];
+    }
+  return {m, sums};
+}
+
+std::vector<Fractions> Pilot::fractions(Allocation rule, Integrand integrand, TechniqueMask available, float minimum,
+                                        const Fractions& cost) const {
   std::vector<Fractions> result(pixels.size());
   tbb::parallel_for(0, height, [&](int y) {
     for (int x = 0; x < width; ++x) {
-      const PilotPixel& center = pixels[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)];
-      HitMoments m;
-      CandidateSums sums;
-      for (int v = std::max(0, y - kRadius); v <= std::min(height - 1, y + kRadius); ++v)
-        for (int u = std::max(0, x - kRadius); u <= std::min(width - 1, x + kRadius); ++u) {
-          const size_t neighbour = static_cast<size_t>(v) * static_cast<size_t>(width) + static_cast<size_t>(u);
-          const PilotPixel& q = pixels[neighbour];
-          if (q.material != center.material || q.placement != center.placement ||
-              dot(q.normal, center.normal) < kSameFace)
-            continue;
-          m.specular += q.moments.specular;
-          m.diffuse += q.moments.diffuse;
-          if (!candidates.empty()) sums += candidates[neighbour];
-        }
+      const auto [m, sums] = smoothed(x, y);
       Fractions& a = result[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)];
-      const TechniqueMask mask = available & center.techniques;
+      const TechniqueMask mask =
+          available & pixels[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)].techniques;
       if (rule == Allocation::kAuto) {
         // sum over hits of (integral f)^2, taken as the same for all of them
         float squares = 0;

@@ -3,6 +3,8 @@
 // surface, turned into each pixel's fractions. Fixed before the main samples are drawn, so these stay unbiased.
 #pragma once
 
+#include <utility>
+
 #include "integrate/hit.h"
 
 namespace wardmis {
@@ -23,6 +25,9 @@ struct Pilot {
   Pilot(int w, int h, Allocation rule) : width(w), height(h), pixels(static_cast<size_t>(w) * static_cast<size_t>(h)) {
     if (rule == Allocation::kAuto) candidates.resize(pixels.size());
   }
+
+  // The moments and candidates of a pixel with those of its neighbours on the same surface, 7 x 7 pixels.
+  std::pair<HitMoments, CandidateSums> smoothed(int x, int y) const;
 
   // Fractions per pixel of the techniques that the scene has (`available`).
   std::vector<Fractions> fractions(Allocation rule, Integrand integrand, TechniqueMask available, float minimum,

@@ -33,7 +33,7 @@ class Bootstrap {
 
  private:
   size_t n_;
-  double tail_;                 // the lower percentile, as a fraction
+  double tail_;                  // the lower percentile, as a fraction
   std::vector<uint32_t> draws_;  // n a row; row 0 is the sample itself
 };
 

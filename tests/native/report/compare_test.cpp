@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "report/compare.h"
-
 #include <gtest/gtest.h>
 #include <png.h>
 #include <sys/wait.h>
@@ -13,6 +11,8 @@
 
 #include "film/exr.h"
 #include "math/error.h"
+#include "report/difference.h"
+#include "report/metrics.h"
 #include "scene/glb_file.h"
 #include "scene/image_file.h"
 

@@ -56,11 +56,10 @@ void expectCoverage(const Synthetic& a, const Synthetic& b, uint64_t seed) {
   for (int experiment = 0; experiment < 1000; ++experiment) {
     const std::vector<double> common = commonFactors(random, 8);
     const std::vector<Curve> first = simulate(a, random, common), second = simulate(b, random, common);
-    const auto ratio =
-        Bootstrap(kSeeds, 7, 600).interval([&](std::span<const uint32_t> draw) -> std::optional<double> {
-          const auto t = timeTo(meanOf(first, draw), target), u = timeTo(meanOf(second, draw), target);
-          return t && u ? std::optional(*t / *u) : std::nullopt;
-        });
+    const auto ratio = Bootstrap(kSeeds, 7, 600).interval([&](std::span<const uint32_t> draw) -> std::optional<double> {
+      const auto t = timeTo(meanOf(first, draw), target), u = timeTo(meanOf(second, draw), target);
+      return t && u ? std::optional(*t / *u) : std::nullopt;
+    });
     if (!ratio) continue;
     ++defined;
     covered += ratio->contains(truth) ? 1 : 0;
@@ -71,9 +70,7 @@ void expectCoverage(const Synthetic& a, const Synthetic& b, uint64_t seed) {
 }
 
 TEST(Resample, IntervalOfATimeRatioCoversTheTruth) { expectCoverage({0.62, 1, 0, 8}, {1, 1, 0, 8}, 11); }
-TEST(Resample, IntervalOfATimeRatioCoversTheTruthWithSkewedErrors) {
-  expectCoverage({1, 0.8, 0, 2}, {1, 1, 0, 2}, 12);
-}
+TEST(Resample, IntervalOfATimeRatioCoversTheTruthWithSkewedErrors) { expectCoverage({1, 0.8, 0, 2}, {1, 1, 0, 2}, 12); }
 TEST(Resample, IntervalOfATimeRatioCoversATie) { expectCoverage({1, 1, 0, 8}, {1, 1, 0, 8}, 13); }
 
 TEST(Resample, IntervalOfAMeanCoversTheTruth) {

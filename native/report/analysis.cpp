@@ -1,0 +1,871 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/analysis.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "film/exr.h"
+#include "math/error.h"
+#include "report/flip.h"
+#include "report/provenance.h"
+#include "report/seeds.h"
+
+namespace wardmis {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kFloorFactor = 10;      // errors under so many times the reference's own are marked
+constexpr double kDiscoveryRate = 0.05;  // of the map of who wins
+constexpr size_t kWinBlock = 4;          // pixels: side of the blocks of the map of who wins
+constexpr double kScatteredWall = 1.15;  // largest over median wall time of a configuration's runs
+constexpr size_t kGroupsShown = 12;      // of each kind, the largest
+constexpr size_t kSmallestGroup = 64;    // pixels
+
+json toJson(const Interval& i) { return {{"mean", i.value}, {"low", i.low}, {"high", i.high}}; }
+json toJson(const std::optional<Interval>& i) { return i ? toJson(*i) : json(); }
+
+// What is known of one configuration besides its runs' figures.
+struct Measured {
+  const Configuration* configuration = nullptr;
+  const std::vector<Run>* runs = nullptr;
+  const Reference* reference = nullptr;
+  SeedStatistics seeds;
+  std::vector<float> predicted;                           // per pixel: variance that the runs claim; empty: unknown
+  std::array<std::vector<float>, kTechniques> fractions;  // per pixel; empty where the technique is not there
+  RgbImage first;                                         // of the first seed
+
+  double cpu(size_t run) const {
+    const Checkpoint& last = (*runs)[run].checkpoints.back();
+    return last.cpuKnown ? last.time.cpu : last.time.wall;
+  }
+};
+
+// Largest over median wall time of the runs.
+double wallSpread(const Measured& m) {
+  std::vector<double> walls;
+  for (const Run& run : *m.runs) walls.push_back(run.checkpoints.back().time.wall);
+  std::sort(walls.begin(), walls.end());
+  return walls.back() / walls[walls.size() / 2];
+}
+
+Measured load(const Experiment& e, size_t k) {
+  Measured m;
+  m.configuration = &e.configurations[k];
+  m.runs = &e.runs[k];
+  m.reference = &e.references[m.configuration->common ? 0 : m.configuration->reference];
+  if (m.runs->size() < 2)
+    throw Error(ExitCode::kCancelled,
+                fmt::format("'{}' has {} finished run{}; a report needs two", m.configuration->name, m.runs->size(),
+                            m.runs->size() == 1 ? "" : "s"),
+                "run the same command again: it goes on where this one ended");
+  std::vector<RgbImage> images;
+  const double n = double(m.runs->size());
+  for (const Run& run : *m.runs) {
+    if (m.configuration->external) {
+      images.push_back(readRgb(run.image));
+      continue;
+    }
+    const ExrImage exr = readExr(run.image);
+    images.push_back(rgbOf(exr, run.image));
+    const size_t pixels = images.back().pixels();
+    m.predicted.resize(pixels);
+    for (const char c : {'R', 'G', 'B'})
+      if (const auto* v = exr.channel(fmt::format("ViewLayer.Variance.{}", c)))
+        for (size_t i = 0; i < pixels; ++i) m.predicted[i] += (*v)[i] / static_cast<float>(3 * n);
+    constexpr const char* kNames[kTechniques] = {"Lobe", "Cosine", "Light"};
+    for (size_t t = 0; t < kTechniques; ++t)
+      if (const auto* v = exr.channel(fmt::format("ViewLayer.Allocation {}.X", kNames[t]))) {
+        m.fractions[t].resize(pixels);
+        for (size_t i = 0; i < pixels; ++i) m.fractions[t][i] += (*v)[i] / static_cast<float>(n);
+      }
+  }
+  m.seeds = seedStatistics(images, m.reference->image, m.reference->variance);
+  m.first = std::move(images[0]);
+  return m;
+}
+
+// The reference's own share of an error; 0 where it is unknown or cannot be told.
+double floorOf(const Reference& r, const MetricInfo& metric) {
+  return metric.value == &Metrics::mse ? r.mseFloor() : metric.value == &Metrics::relMse ? r.relMseFloor() : 0;
+}
+
+const MetricInfo& metricOf(double Metrics::*value) {
+  for (const MetricInfo& m : allMetrics())
+    if (m.value == value) return m;
+  throw std::logic_error("no such metric");
+}
+
+// Statistics of the curves of several seeds, as functions of the seeds drawn.
+class Curves {
+ public:
+  Curves(const Measured& m, const MetricInfo& metric, double Clocks::*clock)
+      : runs_(*m.runs), metric_(metric), clock_(clock), floor_(floorOf(*m.reference, metric)) {}
+
+  // Mean time and error without the reference's share, from the checkpoint `from` on.
+  Curve mean(std::span<const uint32_t> draw, size_t from = 0, bool bySamples = false) const {
+    Curve c;
+    for (size_t k = from; k < runs_[0].checkpoints.size(); ++k) {
+      double time = 0, error = 0;
+      for (const uint32_t i : draw) {
+        const Checkpoint& at = runs_[i].checkpoints[k];
+        time += bySamples ? double(at.spp) : at.time.*clock_;
+        error += at.error.*metric_.value;
+      }
+      c.time.push_back(time / double(draw.size()));
+      c.error.push_back(std::max(error / double(draw.size()) - floor_, 0.0));
+    }
+    return c;
+  }
+  size_t seeds() const { return runs_.size(); }
+  size_t checkpoints() const { return runs_[0].checkpoints.size(); }
+  uint32_t spp(size_t k) const { return runs_[0].checkpoints[k].spp; }
+
+ private:
+  const std::vector<Run>& runs_;
+  const MetricInfo& metric_;
+  double Clocks::*clock_;
+  double floor_;
+};
+
+std::vector<uint32_t> everySeed(size_t n) {
+  std::vector<uint32_t> all(n);
+  std::iota(all.begin(), all.end(), 0u);
+  return all;
+}
+
+// Two significant digits, upwards.
+double roundUp(double x) {
+  const double unit = std::pow(10, std::floor(std::log10(x)) - 1);
+  return std::ceil(x / unit - 1e-9) * unit;
+}
+
+class Reporter {
+ public:
+  Reporter(const Experiment& e, const std::function<void(double)>& told) : e_(e) {
+    for (size_t k = 0; k < e.configurations.size(); ++k) {
+      measured_.push_back(load(e, k));
+      if (told) told(0.7 * double(k + 1) / double(e.configurations.size()));
+    }
+    base_ = &measured_[e.baseline];
+    commonSeeds_ = base_->runs->size();
+    for (const Measured& m : measured_) commonSeeds_ = std::min(commonSeeds_, m.runs->size());
+    choose();
+  }
+
+  Analysis run() {
+    Analysis a;
+    json& r = a.report;
+    r = {{"schema", "wardmis-report-1"},
+         {"title", e_.title},
+         {"version", WARDMIS_VERSION},
+         {"created", timestamp()},
+         {"complete", e_.complete},
+         {"baseline", base_->configuration->name},
+         {"metric", metric_->name},
+         {"clock", clock_ == &Clocks::cpu ? "cpu" : "wall"},
+         {"seeds", json::array()},
+         {"checkpoints", e_.checkpoints},
+         {"width", e_.width},
+         {"height", e_.height},
+         {"metrics", metrics()},
+         {"reference", reference(*base_->reference)},
+         {"configurations", json::array()},
+         {"provenance", provenance()}};
+    for (const Run& run : *base_->runs) r["seeds"].push_back(run.seed);
+    for (const Reference& each : e_.references) r["references"].push_back(reference(each));
+    for (const Measured& m : measured_) r["configurations"].push_back(configuration(m));
+    if (json t = techniques(); !t.empty()) r["techniques"] = std::move(t);
+    if (json m = models(); !m.empty()) r["models"] = std::move(m);
+    r["finding"] = finding(r);
+    pictures(a.pictures);
+    images(a.images);
+    r["images"] = json::array();
+    for (const Picture& p : a.pictures) r["images"].push_back(p.description);
+    return a;
+  }
+
+ private:
+  // The metric and the clock that times and ratios refer to; an error that all reach with half of their samples, clear
+  // of the reference's noise; a time that all have.
+  void choose() {
+    // under a heavy tail a few pixels of a few seeds decide the mean: the rest is asked without them
+    const bool heavy =
+        std::any_of(measured_.begin(), measured_.end(), [](const Measured& m) { return m.seeds.tail.heavy(); });
+    metric_ = &metricOf(heavy ? &Metrics::relMseTrimmed : &Metrics::relMse);
+    // a machine that others use as well: the clock of the processor then says more
+    const bool cpuKnown = std::all_of(measured_.begin(), measured_.end(),
+                                      [](const Measured& m) { return m.runs->front().checkpoints.back().cpuKnown; });
+    const bool scattered = std::any_of(measured_.begin(), measured_.end(),
+                                       [](const Measured& m) { return wallSpread(m) > kScatteredWall; });
+    clock_ = scattered && cpuKnown ? &Clocks::cpu : &Clocks::wall;
+    double target = 0, time = 1e300;
+    for (const Measured& m : measured_) {
+      const Curve c = curvesOf(m).mean(everySeed(m.runs->size()));
+      time = std::min(time, c.time.back());
+      if (m.seeds.biased() && &m != base_) continue;  // it may have a limit of its own
+      target = std::max({target, c.error[c.error.size() - std::min<size_t>(2, c.error.size())],
+                         kFloorFactor * floorOf(*m.reference, *metric_)});
+    }
+    target_ = e_.target.value_or(target > 0 ? roundUp(target) : 1e-3);
+    time_ = time;
+  }
+
+  Curves curvesOf(const Measured& m) const { return {m, *metric_, clock_}; }
+
+  json metrics() const {
+    json all = json::array();
+    for (const MetricInfo& m : allMetrics())
+      all.push_back({{"name", m.name},
+                     {"label", m.label},
+                     {"formula", m.formula},
+                     {"epsilon", m.epsilon > 0 ? json(m.epsilon) : json()},
+                     {"floor_subtracted", m.floorSubtracted}});
+    if (std::any_of(measured_.begin(), measured_.end(),
+                    [](const Measured& m) { return m.runs->front().flip.has_value(); }))
+      all.push_back({{"name", "flip"},
+                     {"label", "HDR-FLIP"},
+                     {"formula",
+                      "mean over pixels of the perceived difference (Andersson et al. 2021), by its authors' program; "
+                      "of the last image alone"},
+                     {"epsilon", nullptr},
+                     {"floor_subtracted", false}});
+    return all;
+  }
+
+  json reference(const Reference& r) const {
+    return {
+        {"estimates", r.estimates},
+        {"source", r.made ? "made" : "given"},
+        {"path", r.made ? r.path.filename().string() : r.path.string()},
+        {"spp", r.spp > 0 ? json(r.spp) : json()},
+        {"seconds", r.seconds > 0 ? json(r.seconds) : json()},
+        {"chunks", r.chunks > 0 ? json(r.chunks) : json()},
+        {"floor",
+         {{"mse", r.known() ? json(r.mseFloor()) : json()}, {"relmse", r.known() ? json(r.relMseFloor()) : json()}}}};
+  }
+
+  json curve(const Measured& m) const {
+    json all = json::array();
+    const size_t n = m.runs->size();
+    const Bootstrap bootstrap(n);
+    const Reference& r = *m.reference;
+    std::vector<double> values(n);
+    const auto mean = [&](auto&& get) {
+      for (size_t i = 0; i < n; ++i) values[i] = get((*m.runs)[i]);
+      return bootstrap.mean(values);
+    };
+    for (size_t k = 0; k < m.runs->front().checkpoints.size(); ++k) {
+      const Checkpoint& at = m.runs->front().checkpoints[k];
+      json j{{"spp", at.spp},
+             {"wall", toJson(mean([&](const Run& run) { return run.checkpoints[k].time.wall; }))},
+             {"cpu", at.cpuKnown ? toJson(mean([&](const Run& run) { return run.checkpoints[k].time.cpu; })) : json()},
+             {"rays",
+              at.rays > 0 ? json(mean([&](const Run& run) { return double(run.checkpoints[k].rays); }).value) : json()},
+             {"samples", at.cameraRays > 0 ? json(at.cameraRays) : json()}};
+      bool near = false;
+      for (const MetricInfo& metric : allMetrics()) {
+        const double floor = floorOf(r, metric);
+        const Interval i = mean([&](const Run& run) { return run.checkpoints[k].error.*metric.value - floor; });
+        j[metric.name] = toJson(i);
+        near = near || (floor > 0 && i.value < kFloorFactor * floor);
+      }
+      if (k + 1 == m.runs->front().checkpoints.size() && m.runs->front().flip)
+        j["flip"] = toJson(mean([](const Run& run) { return run.flip.value_or(0); }));
+      j["near_floor"] = near;
+      all.push_back(std::move(j));
+    }
+    return all;
+  }
+
+  json slopeOf(const Measured& m) const {
+    const Curves curves = curvesOf(m);
+    const size_t n = curves.checkpoints();
+    if (n < 3) return {};
+    // once the pilot's samples are few among all; at least three points
+    const uint32_t from = std::max(4u, 4 * (m.configuration->external ? 0 : m.configuration->settings.pilotSpp));
+    size_t first = 0;
+    while (first + 3 < n && curves.spp(first) < from) ++first;
+    const Bootstrap bootstrap(curves.seeds());
+    const auto against = [&](bool bySamples) {
+      return bootstrap.interval(
+          [&](std::span<const uint32_t> draw) { return slope(curves.mean(draw, first, bySamples)); });
+    };
+    const std::optional<Interval> bySeconds = against(false), bySamples = against(true);
+    if (!bySeconds) return {};
+    const bool independent =
+        !m.configuration->external && m.configuration->settings.sampler == SamplerType::kIndependent;
+    const SlopeVerdict v = judgeSlope(*bySeconds, bySamples, m.seeds.biased(), m.seeds.tail.heavy(), independent);
+    return {{"value", bySeconds->value},
+            {"low", bySeconds->low},
+            {"high", bySeconds->high},
+            {"by_samples", toJson(bySamples)},
+            {"from_spp", curves.spp(first)},
+            {"flag", v.flag},
+            {"cause", v.cause},
+            {"text", "Slope " + v.text + "."}};
+  }
+
+  json biasOf(const Measured& m) const {
+    const BiasTest& b = m.seeds.bias;
+    const bool heavy = m.seeds.tail.heavy(), known = m.reference->known();
+    std::string text = fmt::format(
+        "{} of {} blocks of {} × {} pixels differ from the reference (p < {:.2g}); the whole image: z = {:.2f}",
+        b.failed, b.blocks, kBlock, kBlock, b.threshold, b.imageZ);
+    if (heavy) text += "; the tail is heavy, so that the whole image alone counts";
+    if (!known) text += "; the reference's own noise is not known and counts as bias";
+    return {{"tested", true},
+            {"blocks", b.blocks},
+            {"block", kBlock},
+            {"failed_blocks", b.failed},
+            {"smallest_p", b.smallestP},
+            {"threshold", b.threshold},
+            {"image_z", b.imageZ},
+            {"verdict", m.seeds.biased() ? "biased" : "none found"},
+            {"text", text + "."}};
+  }
+
+  // A statistic of m over the same of the baseline, seeds paired.
+  template <class Statistic>
+  std::optional<Interval> ratioToBase(const Measured& m, const Statistic& statistic) const {
+    if (&m == base_) return {};
+    return Bootstrap(commonSeeds_).interval([&](std::span<const uint32_t> draw) -> std::optional<double> {
+      const std::optional<double> own = statistic(m, draw), base = statistic(*base_, draw);
+      return own && base && *base > 0 ? std::optional(*own / *base) : std::nullopt;
+    });
+  }
+
+  json timeToTarget(const Measured& m) const {
+    const auto time = [this](const Measured& x, std::span<const uint32_t> draw) {
+      return timeTo(curvesOf(x).mean(draw), target_);
+    };
+    const std::optional<Interval> seconds =
+        Bootstrap(m.runs->size()).interval([&](std::span<const uint32_t> draw) { return time(m, draw); });
+    const std::optional<Interval> ratio = ratioToBase(m, time);
+    const bool isBase = &m == base_;
+    return {{"target", target_},
+            {"seconds", toJson(seconds)},
+            {"ratio", toJson(ratio)},
+            {"verdict", isBase            ? (seconds ? "baseline" : "not reached")
+                        : !ratio          ? "not reached"
+                        : ratio->high < 1 ? "faster"
+                        : ratio->low > 1  ? "slower"
+                                          : "tie"}};
+  }
+
+  json equalTime(const Measured& m) const {
+    const auto error = [this](const Measured& x, std::span<const uint32_t> draw) {
+      return errorAt(curvesOf(x).mean(draw), time_);
+    };
+    const auto own = Bootstrap(m.runs->size()).interval([&](std::span<const uint32_t> draw) { return error(m, draw); });
+    if (!own) return {};
+    return {{"seconds", time_}, {"error", toJson(own)}, {"ratio", toJson(ratioToBase(m, error))}};
+  }
+
+  json equalSamples(const Measured& m) const {
+    const auto error = [this](const Measured& x, std::span<const uint32_t> draw) {
+      const double e = curvesOf(x).mean(draw).error.back();
+      return e > 0 ? std::optional(e) : std::nullopt;
+    };
+    const auto own = Bootstrap(m.runs->size()).interval([&](std::span<const uint32_t> draw) { return error(m, draw); });
+    if (!own || m.runs->front().checkpoints.back().spp != base_->runs->front().checkpoints.back().spp) return {};
+    return {{"spp", m.runs->front().checkpoints.back().spp},
+            {"error", toJson(own)},
+            {"ratio", toJson(ratioToBase(m, error))}};
+  }
+
+  // A seed's share of the relative variance; of the error, where the metric leaves pixels out.
+  double spreadOf(const Measured& m, size_t run) const {
+    return metric_->value == &Metrics::relMse ? m.seeds.spread[run]
+                                              : (*m.runs)[run].checkpoints.back().error.*metric_->value;
+  }
+
+  json efficiency(const Measured& m) const {
+    const auto product = [this](const Measured& x, std::span<const uint32_t> draw) -> std::optional<double> {
+      double variance = 0, cpu = 0;
+      for (const uint32_t i : draw) variance += spreadOf(x, i), cpu += x.cpu(i);
+      const double n = double(draw.size());
+      return variance / n * (cpu / n);
+    };
+    const Bootstrap bootstrap(m.runs->size());
+    const auto own = bootstrap.interval([&](std::span<const uint32_t> draw) { return product(m, draw); });
+    const auto byRays = bootstrap.interval([&](std::span<const uint32_t> draw) -> std::optional<double> {
+      double variance = 0, rays = 0;
+      for (const uint32_t i : draw) variance += spreadOf(m, i), rays += double((*m.runs)[i].checkpoints.back().rays);
+      const double n = double(draw.size());
+      return rays > 0 ? std::optional(variance / n * (rays / n)) : std::nullopt;
+    });
+    return {{"variance_x_seconds", toJson(own)},
+            {"variance_x_rays", toJson(byRays)},
+            {"ratio", toJson(ratioToBase(m, product))}};
+  }
+
+  json costOf(const Measured& m) const {
+    if (m.configuration->external) return {};
+    Counts sum;
+    double cpu = 0;
+    for (size_t i = 0; i < m.runs->size(); ++i) sum += (*m.runs)[i].counts, cpu += m.cpu(i);
+    const double samples = double(sum.samples[0]) + double(sum.samples[1]) + double(sum.samples[2]);
+    const double rays = double(sum.cameraRays) + double(sum.lobeRays) + double(sum.cosineRays) + double(sum.shadowRays);
+    const double n = double(m.runs->size());
+    return {{"ns_per_sample", samples > 0 ? json(1e9 * cpu / samples) : json()},
+            {"ns_per_path", 1e9 * cpu / double(sum.cameraRays)},
+            {"rays_per_path", rays / double(sum.cameraRays)},
+            {"evaluations", samples / n},
+            {"samples",
+             {{"lobe", double(sum.samples[kLobe]) / n},
+              {"cosine", double(sum.samples[kCosine]) / n},
+              {"light", double(sum.samples[kLight]) / n}}},
+            {"rays",
+             {{"camera", double(sum.cameraRays) / n},
+              {"lobe", double(sum.lobeRays) / n},
+              {"cosine", double(sum.cosineRays) / n},
+              {"shadow", double(sum.shadowRays) / n}}}};
+  }
+
+  // The runs' own estimate of their variance over what the seeds show.
+  json prediction(const Measured& m) const {
+    if (m.predicted.empty()) return {};
+    constexpr int kBins = 40;  // what lies beyond is in the outermost
+    constexpr double kLow = -4, kWidth = 0.25;
+    std::vector<size_t> counts(kBins);
+    std::vector<double> ratios;
+    double predicted = 0, values = 0;
+    for (size_t i = 0; i < m.predicted.size(); ++i) {
+      double measured = 0, relative = 0;
+      for (size_t c = 0; c < 3; ++c) {
+        measured += double(m.seeds.variance[3 * i + c]) / 3;
+        const double r = double(m.reference->image.rgb[3 * i + c]);
+        relative += 1 / (r * r + kRelMseEpsilon) / 3;
+      }
+      predicted += double(m.predicted[i]) * relative, values += 1;
+      if (!(measured > 0) || !(m.predicted[i] > 0)) continue;
+      const double ratio = double(m.predicted[i]) / measured;
+      ratios.push_back(ratio);
+      ++counts[static_cast<size_t>(std::clamp((std::log2(ratio) - kLow) / kWidth, 0.0, kBins - 1.0))];
+    }
+    if (ratios.empty()) return {};
+    std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2), ratios.end());
+    const double mean = predicted / values;
+    const auto pooled =
+        Bootstrap(m.runs->size()).interval([&](std::span<const uint32_t> draw) -> std::optional<double> {
+          double measured = 0;
+          for (const uint32_t i : draw) measured += m.seeds.spread[i] / double(draw.size());
+          return measured > 0 ? std::optional(mean / measured) : std::nullopt;
+        });
+    json edges = json::array();
+    for (int b = 0; b <= kBins; ++b) edges.push_back(kLow + kWidth * b);
+    const bool independent = m.configuration->settings.sampler == SamplerType::kIndependent;
+    return {{"edges", edges},
+            {"counts", counts},
+            {"median", ratios[ratios.size() / 2]},
+            {"pooled", toJson(pooled)},
+            {"low", pooled ? json(pooled->low) : json()},
+            {"high", pooled ? json(pooled->high) : json()},
+            {"text", independent
+                         ? "1 is expected: the samples are independent."
+                         : "More than 1 is expected: the runs estimate as if their samples were independent, and the "
+                           "sampler's evenly spread points do better."}};
+  }
+
+  json allocationOf(const Measured& m) const {
+    if (m.configuration->external) return {};
+    constexpr const char* kNames[kTechniques] = {"lobe", "cosine", "light"};
+    json j = json::object();
+    const RenderSettings& s = m.configuration->settings;
+    const size_t pixels = m.predicted.size();
+    std::vector<int> present(pixels);
+    for (size_t t = 0; t < kTechniques; ++t)
+      for (size_t i = 0; i < m.fractions[t].size(); ++i) present[i] += (e_.survey.pixels[i].techniques >> t & 1) != 0;
+    size_t sampled = 0, clamped = 0, starved = 0;
+    std::array<double, kTechniques> mean{};
+    const double spp = double(e_.checkpoints.back()), pilot = std::min(double(s.pilotSpp), spp / 2);
+    for (size_t i = 0; i < pixels; ++i) {
+      double sum = 0;
+      for (size_t t = 0; t < kTechniques; ++t) sum += m.fractions[t].empty() ? 0 : double(m.fractions[t][i]);
+      if (!(sum > 0)) continue;
+      ++sampled;
+      bool least = false, none = false;
+      // at the least share after the pilot, whose counts are equal
+      const double limit = (pilot / std::max(1, present[i]) + (spp - pilot) * double(s.minFraction)) / spp * 1.02;
+      for (size_t t = 0; t < kTechniques; ++t) {
+        if (m.fractions[t].empty()) continue;
+        const double a = double(m.fractions[t][i]);
+        mean[t] += a;
+        if ((e_.survey.pixels[i].techniques >> t & 1) == 0) continue;
+        none = none || a <= 0;
+        least = least || (a > 0 && a <= limit);
+      }
+      clamped += present[i] > 1 && least ? 1 : 0;
+      starved += none ? 1 : 0;
+    }
+    if (sampled == 0) return {};
+    for (size_t t = 0; t < kTechniques; ++t)
+      if (!m.fractions[t].empty()) j[kNames[t]] = mean[t] / double(sampled);
+    j["clamped"] = needsMoments(s.allocation) ? json(double(clamped) / double(pixels)) : json();
+    j["starved"] = double(starved) / double(pixels);
+    return j;
+  }
+
+  // Error x CPU time against the baseline's: paired t over the seeds of each block of pixels, Benjamini-Hochberg over
+  // the blocks. Per pixel: 0 better, 1 worse, 2 undecided.
+  std::vector<uint8_t> wins(const Measured& m) const {
+    const size_t n = commonSeeds_, width = static_cast<size_t>(e_.width), height = static_cast<size_t>(e_.height);
+    const size_t across = (width + kWinBlock - 1) / kWinBlock, blocks = across * ((height + kWinBlock - 1) / kWinBlock);
+    const auto blockOf = [&](size_t i) { return i / width / kWinBlock * across + i % width / kWinBlock; };
+    std::vector<double> sum(blocks), squares(blocks);
+    for (size_t s = 0; s < n; ++s) {
+      std::vector<double> difference(blocks);
+      for (size_t i = 0; i < width * height; ++i)
+        difference[blockOf(i)] +=
+            double(m.seeds.errors[s][i]) * m.cpu(s) - double(base_->seeds.errors[s][i]) * base_->cpu(s);
+      for (size_t b = 0; b < blocks; ++b) sum[b] += difference[b], squares[b] += difference[b] * difference[b];
+    }
+    std::vector<double> p(blocks);
+    for (size_t b = 0; b < blocks; ++b) p[b] = pOfStudent(tOfDifferences(sum[b], squares[b], n), double(n) - 1);
+    const double threshold = benjaminiHochberg(p, kDiscoveryRate);
+    std::vector<uint8_t> result(width * height);
+    for (size_t i = 0; i < result.size(); ++i) {
+      const size_t b = blockOf(i);
+      result[i] = p[b] <= threshold ? (sum[b] < 0 ? 0 : 1) : 2;
+    }
+    return result;
+  }
+
+  struct Group {
+    std::string kind, name;
+    std::vector<uint32_t> pixels;
+  };
+  const std::vector<Group>& groups() const {
+    if (!groups_.empty()) return groups_;
+    std::map<std::string, std::vector<uint32_t>> objects, materials, stiffness;
+    constexpr std::pair<float, const char*> kClasses[] = {
+        {2, "a: 1 to 2"}, {10, "b: 2 to 10"}, {100, "c: 10 to 100"}, {1e4f, "d: 100 to 10⁴"}, {1e38f, "e: over 10⁴"}};
+    for (uint32_t i = 0; i < e_.survey.pixels.size(); ++i) {
+      const SurveyPixel& p = e_.survey.pixels[i];
+      if (p.material < 0) continue;
+      if (const std::string* name = e_.built->geometry.placements[p.placement].name) objects[*name].push_back(i);
+      materials[e_.scene->materials[static_cast<size_t>(p.material)].name].push_back(i);
+      if (p.stiffness > 0)
+        for (const auto& [limit, name] : kClasses)
+          if (p.stiffness < limit) {
+            stiffness[name].push_back(i);
+            break;
+          }
+    }
+    for (auto* kind : {&objects, &materials, &stiffness}) {
+      std::vector<Group> found;
+      for (auto& [name, pixels] : *kind)
+        if (pixels.size() >= kSmallestGroup)
+          found.push_back({kind == &objects     ? "object"
+                           : kind == &materials ? "material"
+                                                : "stiffness",
+                           kind == &stiffness ? name.substr(3) : name, std::move(pixels)});
+      if (found.size() < 2) continue;  // the whole image says it already
+      if (kind != &stiffness)
+        std::stable_sort(found.begin(), found.end(),
+                         [](const Group& a, const Group& b) { return a.pixels.size() > b.pixels.size(); });
+      if (found.size() > kGroupsShown) found.resize(kGroupsShown);
+      groups_.insert(groups_.end(), std::make_move_iterator(found.begin()), std::make_move_iterator(found.end()));
+    }
+    return groups_;
+  }
+
+  json groupsOf(const Measured& m) const {
+    json all = json::array();
+    for (const Group& g : groups()) {
+      const auto errors = [&](const Measured& x) {
+        std::vector<double> perSeed;
+        for (const std::vector<float>& e : x.seeds.errors) {
+          double sum = 0;
+          for (const uint32_t i : g.pixels) sum += double(e[i]);
+          perSeed.push_back(sum / double(g.pixels.size()));
+        }
+        return perSeed;
+      };
+      const std::vector<double> own = errors(m), base = errors(*base_);
+      std::optional<Interval> ratio, errorRatio;
+      if (&m != base_) {
+        errorRatio = Bootstrap(commonSeeds_).interval([&](std::span<const uint32_t> draw) -> std::optional<double> {
+          double a = 0, b = 0;
+          for (const uint32_t i : draw) a += own[i], b += base[i];
+          return b > 0 ? std::optional(a / b) : std::nullopt;
+        });
+        ratio = Bootstrap(commonSeeds_).interval([&](std::span<const uint32_t> draw) -> std::optional<double> {
+          double a = 0, b = 0, s = 0, t = 0;
+          for (const uint32_t i : draw) a += own[i], b += base[i], s += m.cpu(i), t += base_->cpu(i);
+          return b > 0 ? std::optional(a * s / (b * t)) : std::nullopt;
+        });
+      }
+      all.push_back({{"kind", g.kind},
+                     {"name", g.name},
+                     {"pixels", g.pixels.size()},
+                     {"relmse", toJson(Bootstrap(own.size()).mean(own))},
+                     {"error_ratio", toJson(errorRatio)},
+                     {"ratio", toJson(ratio)}});
+    }
+    return all;
+  }
+
+  json configuration(const Measured& m) const {
+    const Configuration& c = *m.configuration;
+    RareCounts dropped;
+    double pilot = 0;
+    for (const Run& run : *m.runs) dropped += run.counts.rare, pilot += run.pilotSeconds / double(m.runs->size());
+    std::string description;
+    for (const auto& [key, value] : c.described.items())
+      if (c.external || key == "allocation" || key == "weights" || key == "integrand" || key == "integrator" ||
+          key == "sampler")
+        description += (description.empty() ? "" : ", ") + key + " " +
+                       (value.is_string() ? value.get<std::string>() : value.dump());
+    json wins;
+    if (&m != base_ && !(c.external && !c.common)) {
+      const std::vector<uint8_t> map = this->wins(m);
+      const double n = double(map.size());
+      wins = {{"better", double(std::count(map.begin(), map.end(), 0)) / n},
+              {"worse", double(std::count(map.begin(), map.end(), 1)) / n},
+              {"undecided", double(std::count(map.begin(), map.end(), 2)) / n}};
+    }
+    return {{"name", c.name},
+            {"renderer", c.renderer},
+            {"settings", c.described},
+            {"description", description},
+            {"kernel", c.kernel},
+            {"left_out", c.leftOut},
+            {"notes", c.notes},
+            {"runs", m.runs->size()},
+            {"reference", m.reference->estimates},
+            {"curve", curve(m)},
+            {"pilot_seconds", c.external ? json() : json(pilot)},
+            {"slope", slopeOf(m)},
+            {"bias", biasOf(m)},
+            {"tail",
+             {{"top_share", m.seeds.tail.topShare},
+              {"seed_ratio", m.seeds.tail.seedRatio},
+              {"kurtosis", m.seeds.tail.kurtosis},
+              {"heavy", m.seeds.tail.heavy()}}},
+            {"time_to_target", timeToTarget(m)},
+            {"equal_time", equalTime(m)},
+            {"equal_samples", equalSamples(m)},
+            {"efficiency", efficiency(m)},
+            {"cost", costOf(m)},
+            {"prediction", prediction(m)},
+            {"allocation", allocationOf(m)},
+            {"counts",
+             c.external ? json()
+                        : json{{"nan", dropped.nan}, {"infinite", dropped.infinite}, {"negative", dropped.negative}}},
+            {"wins", wins},
+            {"groups", groupsOf(m)}};
+  }
+
+  json techniques() const {
+    constexpr const char* kNames[kTechniques] = {"lobe", "cosine", "light"};
+    json all = json::array();
+    for (size_t t = 0; t < kTechniques; ++t) {
+      if ((e_.survey.techniques >> t & 1) == 0) continue;
+      all.push_back({{"name", kNames[t]},
+                     {"ns_per_sample", 1e9 * e_.sampleCost[t]},
+                     {"second_moment", e_.survey.secondMoment[t]},
+                     {"variance", e_.survey.variance[t]},
+                     {"variance_x_cost", 1e9 * e_.sampleCost[t] * e_.survey.variance[t]}});
+    }
+    return all.size() > 1 ? all : json::array();
+  }
+
+  // Other renderers' converged images beside ours.
+  json models() const {
+    json all = json::array();
+    for (const Measured& m : measured_) {
+      if (!m.configuration->external) continue;
+      const Reference &own = e_.references[0], &other = e_.references[m.configuration->reference];
+      const ImageError d = compareImages(other.image, own.image);
+      double mean[3] = {}, ours[3] = {};
+      for (size_t i = 0; i < own.image.pixels(); ++i)
+        for (size_t c = 0; c < 3; ++c)
+          mean[c] += double(other.image.rgb[3 * i + c]), ours[c] += double(own.image.rgb[3 * i + c]);
+      const double noise = own.relMseFloor() + other.relMseFloor();
+      json j{{"name", m.configuration->name},
+             {"against", "WardMIS"},
+             {"difference",
+              {{"relmse", std::max(0.0, d.relMse - noise)},
+               {"mse", std::max(0.0, d.mse - own.mseFloor() - other.mseFloor())},
+               {"mean", {{"r", mean[0] / ours[0] - 1}, {"g", mean[1] / ours[1] - 1}, {"b", mean[2] / ours[2] - 1}}}}},
+             {"common", m.configuration->common},
+             {"agree", nullptr}};
+      const std::string name = m.configuration->renderer;
+      if (m.configuration->common && own.known() && other.known()) {
+        const BiasTest test = compareConverged(other, own);
+        const bool agree = !test.biased() && !m.seeds.biased();
+        j["agree"] = agree;
+        j["text"] = agree ? fmt::format(
+                                "{} and WardMIS have the same integrand here, share one reference, and agree with it "
+                                "(no block of {} × {} pixels differs, image z {:.1f}).",
+                                name, kBlock, kBlock, test.imageZ)
+                          : fmt::format(
+                                "{} and WardMIS should have the same integrand here, and do NOT agree: {} of {} blocks "
+                                "differ, image z {:.1f}.",
+                                name, test.failed, test.blocks, test.imageZ);
+      } else {
+        j["text"] = fmt::format(
+            "The converged images of {} and WardMIS differ by a relMSE of {:.3g}: a difference of the "
+            "models of reflection, not an error; each is held against its own reference.",
+            name, std::max(0.0, d.relMse - noise));
+      }
+      all.push_back(std::move(j));
+    }
+    return all;
+  }
+
+  json provenance() const {
+    json j = machineJson();
+    json spread = json::object(), loads = json::array();
+    double low = 1e300, high = 0;
+    for (const Measured& m : measured_) {
+      spread[m.configuration->name] = wallSpread(m);
+      if (m.configuration->external) continue;
+      for (const Run& run : *m.runs) {
+        loads.push_back(run.load);
+        low = std::min(low, run.calibration), high = std::max(high, run.calibration);
+      }
+    }
+    j.update({{"threads", e_.threads},
+              {"scene", e_.scene->path},
+              {"scene_hash", e_.sceneHash},
+              {"triangles", e_.built->geometry.triangles},
+              {"load", loads},
+              {"timing_spread", spread},
+              {"calibration", {{"low", 1e9 * low}, {"high", 1e9 * high}}},
+              {"started", e_.started},
+              {"ended", e_.ended},
+              {"command", e_.command}});
+    return j;
+  }
+
+  // Per pixel, over the seeds.
+  static std::vector<float> rmsError(const Measured& m) {
+    std::vector<float> rms(m.seeds.errors[0].size());
+    for (const std::vector<float>& e : m.seeds.errors)
+      for (size_t i = 0; i < rms.size(); ++i) rms[i] += e[i] / static_cast<float>(m.seeds.errors.size());
+    for (float& v : rms) v = std::sqrt(v);
+    return rms;
+  }
+
+  void images(std::vector<std::pair<std::string, ExrImage>>& all) const {
+    for (const Measured& m : measured_) {
+      ExrImage mean{e_.width, e_.height, {}, {}};
+      for (size_t c = 0; c < 3; ++c) {
+        mean.channels.push_back({std::string(1, "RGB"[c]), std::vector<float>(m.seeds.mean.pixels())});
+        for (size_t i = 0; i < m.seeds.mean.pixels(); ++i) mean.channels[c].values[i] = m.seeds.mean.rgb[3 * i + c];
+      }
+      const std::string name = folderName(m.configuration->name);
+      all.emplace_back(name + ".exr", std::move(mean));
+      all.emplace_back(name + "-error.exr", ExrImage{e_.width, e_.height, {{"Y", rmsError(m)}}, {}});
+    }
+  }
+
+  void pictures(std::vector<Picture>& all) const {
+    const int w = e_.width, h = e_.height;
+    all.push_back(radiancePicture(
+        {"reference", "reference", "image", "", fmt::format("The reference: {}.", base_->reference->estimates)},
+        base_->reference->image));
+    for (const Measured& m : measured_)
+      all.push_back(
+          radiancePicture({m.configuration->name, m.configuration->name, "image", m.configuration->name,
+                           fmt::format("One seed, {} samples per pixel.", m.runs->front().checkpoints.back().spp)},
+                          m.first));
+    for (const Measured& m : measured_)
+      if (m.configuration->external)
+        all.push_back(radiancePicture({m.configuration->name + "/reference", m.configuration->name + ", converged",
+                                       "image", m.configuration->name, "The converged image of the other renderer."},
+                                      e_.references[m.configuration->reference].image));
+    // one scale for all errors: from the values of the baseline
+    std::vector<std::vector<float>> errors;
+    for (const Measured& m : measured_) errors.push_back(rmsError(m));
+    std::vector<float> sorted = errors[e_.baseline];
+    std::sort(sorted.begin(), sorted.end());
+    const double top = std::max(1e-6, double(sorted[sorted.size() - 1 - sorted.size() / 200]));
+    const double high = std::ceil(std::log10(top) * 4) / 4, low = high - 2.5;
+    for (size_t k = 0; k < measured_.size(); ++k) {
+      const std::string& name = measured_[k].configuration->name;
+      all.push_back(scalarPicture({name + "/error", name + ", error", "error", name,
+                                   "Root mean square over the seeds of the relative error; the same scale for all."},
+                                  errors[k], w, h, low, high, true));
+    }
+    for (const Measured& m : measured_) {
+      if (m.configuration->external) continue;
+      std::vector<float> shares(3 * static_cast<size_t>(w) * static_cast<size_t>(h));
+      int present = 0;
+      for (size_t t = 0; t < kTechniques; ++t) {
+        present += m.fractions[t].empty() ? 0 : 1;
+        for (size_t i = 0; i < m.fractions[t].size(); ++i) shares[3 * i + t] = m.fractions[t][i];
+      }
+      const std::string& name = m.configuration->name;
+      if (present > 1)
+        all.push_back(
+            sharesPicture({name + "/allocation", name + ", allocation", "allocation", name,
+                           "Shares of the samples at first hits: red the lobe, green the cosine, blue the light."},
+                          shares, w, h));
+    }
+    for (const Measured& m : measured_) {
+      const Configuration& c = *m.configuration;
+      if (&m == base_ || (c.external && !c.common)) continue;
+      all.push_back(classesPicture(
+          {c.name + "/wins", c.name + " or " + base_->configuration->name, "map", c.name,
+           fmt::format("Where relMSE × CPU time is less than with {}: blocks of {} × {} pixels, paired t-tests "
+                       "over the seeds, false discoveries at most 5 %.",
+                       base_->configuration->name, kWinBlock, kWinBlock)},
+          wins(m), w, h,
+          {{c.name + " is better", "#0072B2"},
+           {base_->configuration->name + " is better", "#D55E00"},
+           {"undecided", "#999999"}}));
+    }
+    for (const Measured& m : measured_)
+      all.push_back(scalarPicture(
+          {m.configuration->name + "/bias", m.configuration->name + ", bias z", "map", m.configuration->name,
+           "z of the mean of the seeds against the reference, by blocks; beyond ±6 or so is bias."},
+          m.seeds.bias.z, w, h, -6, 6, false));
+    std::vector<float> stiffness(e_.survey.pixels.size());
+    float most = 0;
+    for (size_t i = 0; i < stiffness.size(); ++i)
+      stiffness[i] = e_.survey.pixels[i].stiffness > 0 ? e_.survey.pixels[i].stiffness : std::nanf(""),
+      most = std::max(most, e_.survey.pixels[i].stiffness);
+    if (most > 0)
+      all.push_back(scalarPicture({"stiffness", "stiffness", "map", "",
+                                   "Largest over smallest second moment of the techniques, at the first hit."},
+                                  stiffness, w, h, 0, std::max(1.0, std::ceil(std::log10(double(most)))), true));
+    for (const Measured& m : measured_)
+      if (m.configuration->external) {
+        const Reference &own = e_.references[0], &other = e_.references[m.configuration->reference];
+        std::vector<float> d(own.image.pixels());
+        for (size_t i = 0; i < d.size(); ++i)
+          for (size_t c = 0; c < 3; ++c)
+            d[i] += static_cast<float>((double(other.image.rgb[3 * i + c]) - double(own.image.rgb[3 * i + c])) /
+                                       (std::abs(double(own.image.rgb[3 * i + c])) + kMapeEpsilon) / 3);
+        all.push_back(scalarPicture(
+            {m.configuration->name + "/model", m.configuration->name + " − WardMIS", "map", m.configuration->name,
+             "Relative difference of the converged images: of the models, not an error."},
+            d, w, h, -1, 1, false));
+      }
+  }
+
+  const Experiment& e_;
+  std::vector<Measured> measured_;
+  const Measured* base_ = nullptr;
+  const MetricInfo* metric_ = nullptr;
+  double Clocks::*clock_ = &Clocks::wall;
+  size_t commonSeeds_ = 0;
+  double target_ = 0, time_ = 0;
+  mutable std::vector<Group> groups_;
+};
+
+}  // namespace
+
+Analysis analyse(const Experiment& experiment, const std::function<void(double)>& told) {
+  return Reporter(experiment, told).run();
+}
+
+}  // namespace wardmis

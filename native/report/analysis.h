@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From what was measured to what is reported: every number of docs/report-format.md.
+#pragma once
+
+#include "report/experiment.h"
+#include "report/pictures.h"
+
+namespace wardmis {
+
+struct Analysis {
+  nlohmann::json report;  // report.json
+  std::vector<Picture> pictures;
+  std::vector<std::pair<std::string, ExrImage>> images;  // for images/: a configuration's mean, and its error
+};
+
+// told: the share of the work that is done. Throws Error(kUsage) where a configuration has fewer than two seeds.
+Analysis analyse(const Experiment& experiment, const std::function<void(double)>& told);
+
+// The first paragraph, in words, from the numbers of the report.
+std::vector<std::string> finding(const nlohmann::json& report);
+
+}  // namespace wardmis

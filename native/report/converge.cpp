@@ -1,0 +1,431 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/converge.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <set>
+
+#include "film/exr.h"
+#include "film/write_file.h"
+#include "integrate/cost.h"
+#include "integrate/passes.h"
+#include "math/error.h"
+#include "report/external.h"
+#include "report/flip.h"
+#include "report/provenance.h"
+
+namespace wardmis {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+constexpr uint32_t kReferenceChunks = 8;
+constexpr uint32_t kReferenceFactor = 16;        // samples of the reference over those of a run
+constexpr uint64_t kReferenceSeed = 0x5eed0000;  // far from the runs'
+constexpr double kReferenceShare = 0.25;         // of a budget
+constexpr uint32_t kSurveySamples = 16;
+constexpr const char* kLayer = "ViewLayer";
+
+json readJson(const fs::path& path) {
+  std::ifstream in(path);
+  try {
+    return json::parse(in);
+  } catch (const json::exception& e) {
+    throw Error(ExitCode::kFile, fmt::format("{}: {}", path.string(), e.what()), "the file is damaged; delete it");
+  }
+}
+
+void makeFolder(const fs::path& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error)
+    throw Error(ExitCode::kFile, fmt::format("{}: the folder cannot be made: {}", path.string(), error.message()),
+                "choose another");
+}
+
+// Which light the images of these settings converge to.
+std::string estimates(const RenderSettings& s) {
+  return s.integrator == Integrator::kDirect || s.maxDepth == 1 ? "direct light"
+                                                                : fmt::format("paths, depth {}", s.maxDepth);
+}
+
+class Study {
+ public:
+  Study(const BuiltScene& built, const StudyPlan& plan, const StudyObserver& observer)
+      : built_(built), plan_(plan), observer_(observer), start_(wallSeconds()) {
+    Experiment& e = experiment_;
+    e.folder = plan.folder;
+    e.title = plan.title;
+    e.scene = &built.scene;
+    e.built = &built;
+    e.width = built.scene.film.x1 - built.scene.film.x0;
+    e.height = built.scene.film.y1 - built.scene.film.y0;
+    e.configurations = plan.configurations;
+    e.target = plan.target;
+    e.command = plan.command;
+    e.threads = threadsOf(plan.threads);
+    e.started = timestamp();
+    e.sceneHash = hashOf(plan.scenePath);
+    for (size_t i = 0; i < plan.seeds; ++i) e.seeds.push_back(plan.firstSeed + i);
+  }
+
+  Experiment run() {
+    checkNames();
+    makeFolder(plan_.folder);
+    identify();
+    Experiment& e = experiment_;
+    for (uint32_t n = 1; n < maxSpp_; n *= 2) e.checkpoints.push_back(n);
+    e.checkpoints.push_back(maxSpp_);
+    RenderSettings s = e.configurations[e.baseline].settings;
+    s.threads = plan_.threads, s.seed = kReferenceSeed - 1, s.spp = std::max(maxSpp_, kSurveySamples);
+    for (Configuration& c : e.configurations) describeKernel(c);
+    references();
+    if (!stopped()) {
+      e.survey = survey(built_, s, kSurveySamples);
+      withThreads(s.threads, [&] { e.sampleCost = measureCost(built_, s).sample; });
+    }
+    e.runs.resize(e.configurations.size());
+    if (!stopped()) runs();
+    for (const fs::path& manifest : plan_.external)
+      if (!stopped()) addExternal(e, manifest, observer_.warn);
+    e.complete = !stopped();
+    e.ended = timestamp();
+    return std::move(e);
+  }
+
+ private:
+  bool stopped() const { return observer_.stop != nullptr && observer_.stop->load() != Stop::kNo; }
+
+  void checkNames() {
+    Experiment& e = experiment_;
+    std::set<std::string> names;
+    for (const Configuration& c : e.configurations)
+      if (!names.insert(folderName(c.name)).second)
+        throw Error(ExitCode::kUsage, fmt::format("two configurations are called '{}'", c.name),
+                    "give them names: --configuration NAME:allocation=...");
+    if (plan_.baseline.empty()) return;
+    const auto found = std::find_if(e.configurations.begin(), e.configurations.end(),
+                                    [&](const Configuration& c) { return c.name == plan_.baseline; });
+    if (found == e.configurations.end())
+      throw Error(ExitCode::kUsage, fmt::format("--baseline '{}' is none of the configurations", plan_.baseline),
+                  "name one of them");
+    e.baseline = static_cast<size_t>(found - e.configurations.begin());
+  }
+
+  // What the folder is a study of, and the number of samples, which a budget decides once.
+  void identify() {
+    const Experiment& e = experiment_;
+    json configurations = json::object();
+    for (const Configuration& c : e.configurations) configurations[c.name] = c.described;
+    json identity{{"schema", "wardmis-study-1"},
+                  {"version", WARDMIS_VERSION},
+                  {"scene", e.sceneHash},
+                  {"width", e.width},
+                  {"height", e.height},
+                  {"configurations", configurations},
+                  {"max_spp", plan_.budgetSeconds > 0 ? json() : json(plan_.maxSpp)},
+                  {"budget_seconds", plan_.budgetSeconds},
+                  {"reference", plan_.reference.empty() ? "" : hashOf(plan_.reference)},
+                  {"reference_seconds", plan_.referenceSeconds},
+                  {"first_seed", plan_.firstSeed}};
+    const fs::path path = plan_.folder / "study.json";
+    if (fs::exists(path)) {
+      const json found = readJson(path);
+      for (const auto& [key, value] : identity.items())
+        if (!found.contains(key) || found[key] != value)
+          throw Error(ExitCode::kUsage,
+                      fmt::format("{} holds another study, which differs in '{}'", plan_.folder.string(), key),
+                      "choose another folder, or delete this one");
+      maxSpp_ = found.at("chosen_spp");
+      referenceSpp_ = found.at("reference_spp");
+      return;
+    }
+    choose();
+    identity["chosen_spp"] = maxSpp_;
+    identity["reference_spp"] = referenceSpp_;
+    writeFile(path, identity.dump(2) + '\n');
+  }
+
+  // Samples of a run, and of each chunk of the reference.
+  void choose() {
+    maxSpp_ = plan_.maxSpp;
+    referenceSpp_ = std::max(1u, maxSpp_ * kReferenceFactor / kReferenceChunks);
+    if (plan_.budgetSeconds <= 0 && plan_.referenceSeconds <= 0) return;
+    const double perSample = secondsPerSample();
+    const double forReference = !plan_.reference.empty()     ? 0
+                                : plan_.referenceSeconds > 0 ? plan_.referenceSeconds
+                                                             : kReferenceShare * plan_.budgetSeconds;
+    const size_t targets = referenceTargets().size();
+    if (plan_.budgetSeconds > 0) {
+      const double perRun = (0.95 * plan_.budgetSeconds - forReference) /
+                            double(experiment_.configurations.size() * experiment_.seeds.size());
+      const double affordable = perRun / perSample;
+      if (affordable < 4)
+        throw Error(
+            ExitCode::kUsage,
+            fmt::format("--budget-seconds {}: {:.1f} samples per pixel for each of {} runs, after {:.0f} s for "
+                        "the reference",
+                        plan_.budgetSeconds, std::max(0.0, affordable),
+                        experiment_.configurations.size() * experiment_.seeds.size(), forReference),
+            fmt::format("give at least {:.0f} s, or fewer configurations, fewer --seeds or a lower --resolution",
+                        std::ceil(1.1 * (forReference +
+                                         4 * perSample *
+                                             double(experiment_.configurations.size() * experiment_.seeds.size())))));
+      maxSpp_ = std::bit_floor(static_cast<uint32_t>(std::min(affordable, double(1u << 24))));
+      referenceSpp_ = std::max(1u, maxSpp_ * kReferenceFactor / kReferenceChunks);
+    }
+    if (forReference > 0)
+      referenceSpp_ = static_cast<uint32_t>(
+          std::clamp(forReference / double(targets) / kReferenceChunks / perSample, 1.0, double(1u << 24)));
+  }
+
+  double secondsPerSample() const {
+    RenderSettings s = experiment_.configurations[experiment_.baseline].settings;
+    s.spp = 8, s.seed = kReferenceSeed - 2, s.threads = plan_.threads;
+    double seconds = 0;
+    RenderObserver watch;
+    watch.stop = observer_.stop;
+    for (int round = 0; round < 2; ++round) {  // the first warms the caches
+      Statistics st;
+      const FilmBuffer film = render(built_, s, st, watch);
+      seconds = (st.pilotSeconds + st.renderSeconds) / std::max(1u, film.samples);
+    }
+    return std::max(seconds, 1e-9);
+  }
+
+  // The settings of one configuration for each kind of light that is estimated.
+  std::map<std::string, RenderSettings> referenceTargets() const {
+    std::map<std::string, RenderSettings> targets;
+    for (const Configuration& c : experiment_.configurations) targets.emplace(estimates(c.settings), c.settings);
+    return targets;
+  }
+
+  void describeKernel(Configuration& c) const {
+    const RenderSetup setup(built_, c.settings);
+    c.kernel = describe(setup.kernelNeeds);
+    c.leftOut = leftOut(built_.scene, setup.needs, built_.emitters);
+  }
+
+  void references() {
+    Experiment& e = experiment_;
+    std::vector<std::string> order;  // the baseline's first
+    order.push_back(estimates(e.configurations[e.baseline].settings));
+    for (const Configuration& c : e.configurations)
+      if (const std::string k = estimates(c.settings); std::find(order.begin(), order.end(), k) == order.end())
+        order.push_back(k);
+    const auto targets = referenceTargets();
+    for (const std::string& key : order) {
+      if (stopped()) return;
+      if (!plan_.reference.empty()) {
+        e.references.push_back(given(key));
+        if (order.size() > 1 && observer_.warn)
+          observer_.warn(
+              "the configurations estimate different light, and all are held against the one reference given");
+        break;
+      }
+      makeReference(key, targets.at(key), e.references.size());
+    }
+    for (Configuration& c : e.configurations) {
+      const auto k = std::find(order.begin(), order.end(), estimates(c.settings));
+      c.reference = plan_.reference.empty() ? static_cast<size_t>(k - order.begin()) : 0;
+    }
+  }
+
+  Reference given(const std::string& key) const {
+    Reference r;
+    r.estimates = key;
+    r.path = plan_.reference;
+    r.image = readRgb(plan_.reference);
+    if (r.image.width != experiment_.width || r.image.height != experiment_.height)
+      throw Error(ExitCode::kUsage,
+                  fmt::format("{} has {} x {} pixels, the render {} x {}", plan_.reference.string(), r.image.width,
+                              r.image.height, experiment_.width, experiment_.height),
+                  "render the reference at the same resolution and border");
+    if (plan_.reference.extension() == ".exr") {
+      const ExrImage exr = readExr(plan_.reference);
+      const std::vector<float>* v[3];
+      bool has = true;
+      for (size_t c = 0; c < 3; ++c)
+        has = has && (v[c] = exr.channel(fmt::format("{}.Variance.{}", kLayer, "RGB"[c]))) != nullptr;
+      if (has) {
+        r.variance.resize(r.image.rgb.size());
+        for (size_t i = 0; i < r.image.pixels(); ++i)
+          for (size_t c = 0; c < 3; ++c) r.variance[3 * i + c] = (*v[c])[i];
+      }
+    }
+    if (!r.known() && observer_.warn)
+      observer_.warn(fmt::format("{} has no Variance pass: its own noise is unknown and is not subtracted",
+                                 plan_.reference.string()));
+    return r;
+  }
+
+  void makeReference(const std::string& key, RenderSettings s, size_t index) {
+    const std::string suffix = index == 0 ? "" : fmt::format("-{}", index + 1);
+    const fs::path folder = plan_.folder / ("reference" + suffix),
+                   path = plan_.folder / ("reference" + suffix + ".exr");
+    makeFolder(folder);
+    s.allocation = Allocation::kEqual;
+    s.weights.reset();
+    s.sampler = SamplerType::kSobol;
+    s.spp = referenceSpp_;
+    s.threads = plan_.threads;
+    Reference r;
+    r.estimates = key, r.path = path, r.made = true, r.spp = referenceSpp_ * kReferenceChunks;
+    r.chunks = kReferenceChunks;
+    ImageMean mean;
+    for (uint32_t k = 0; k < kReferenceChunks; ++k) {
+      const fs::path chunk = folder / fmt::format("chunk-{}.exr", k + 1);
+      if (!fs::exists(chunk)) {
+        s.seed = kReferenceSeed + k;
+        Statistics st;
+        RenderObserver watch;
+        watch.stop = observer_.stop;
+        watch.progress = [&](const Progress& p) {
+          const double done = (k + p.fraction) / kReferenceChunks, spent = wallSeconds() - start_;
+          tell({"reference", "", k + 1, k, kReferenceChunks, kReferenceShare * done, spent,
+                expectedLeft(kReferenceShare * done, spent)});
+        };
+        const FilmBuffer film = render(built_, s, st, watch);
+        if (stopped()) return;
+        ExrImage image = toPasses(film, {{"Combined", "RGBA", "combined"}}, kLayer, built_.scene.zUp);
+        image.attributes.emplace_back("wardmis:seconds", fmt::format("{}", st.pilotSeconds + st.renderSeconds));
+        writeExr(chunk, image, true);
+      }
+      const ExrImage exr = readExr(chunk);
+      for (const auto& [name, value] : exr.attributes)
+        if (name == "wardmis:seconds") r.seconds += std::atof(value.c_str());
+      mean.add(rgbOf(exr, chunk));
+    }
+    r.image = mean.mean(), r.variance = mean.variance();
+    if (!fs::exists(path)) {
+      ExrImage out{r.image.width, r.image.height, {}, {}};
+      for (const auto& [pass, values] : {std::pair{"Combined", &r.image.rgb}, std::pair{"Variance", &r.variance}})
+        for (size_t c = 0; c < 3; ++c) {
+          ExrChannel channel{fmt::format("{}.{}.{}", kLayer, pass, "RGB"[c]), std::vector<float>(r.image.pixels())};
+          for (size_t i = 0; i < r.image.pixels(); ++i) channel.values[i] = (*values)[3 * i + c];
+          out.channels.push_back(std::move(channel));
+        }
+      writeExr(path, out, true);
+    }
+    experiment_.references.push_back(std::move(r));
+  }
+
+  void runs() {
+    Experiment& e = experiment_;
+    struct Job {
+      size_t configuration, seed;
+    };
+    std::vector<Job> jobs;  // ABCCBA: a machine that slowly changes meets all alike
+    for (size_t s = 0; s < e.seeds.size(); ++s)
+      for (size_t k = 0; k < e.configurations.size(); ++k)
+        jobs.push_back({s % 2 == 0 ? k : e.configurations.size() - 1 - k, s});
+    const double spentBefore = wallSeconds() - start_;
+    size_t fresh = 0;
+    for (size_t j = 0; j < jobs.size() && !stopped(); ++j) {
+      Configuration& c = e.configurations[jobs[j].configuration];
+      const uint64_t seed = e.seeds[jobs[j].seed];
+      const fs::path folder = plan_.folder / "runs" / folderName(c.name);
+      makeFolder(folder);
+      const fs::path file = folder / fmt::format("seed-{:04}.json", seed);
+      Run run;
+      if (fs::exists(file)) {
+        const json found = readJson(file);
+        try {
+          run = runFromJson(found);
+        } catch (const json::exception& x) {
+          throw Error(ExitCode::kFile, fmt::format("{}: {}", file.string(), x.what()), "delete the file, and go on");
+        }
+        run.image = fs::path(file).replace_extension(".exr");
+      } else {
+        const auto tellRun = [&](double part) {
+          const double done = (double(j) + part) / double(jobs.size()), spent = wallSeconds() - start_;
+          const double perJob = (spent - spentBefore) / std::max(0.5, double(fresh) + part);
+          tell({"runs", c.name, seed, j, jobs.size(), kReferenceShare + (0.98 - kReferenceShare) * done, spent,
+                perJob * (double(jobs.size() - j) - part)});
+        };
+        tellRun(0);
+        if (!measureRun(c, seed, file, run, tellRun)) return;
+        ++fresh;
+      }
+      e.runs[jobs[j].configuration].push_back(std::move(run));
+    }
+    for (std::vector<Run>& r : e.runs)
+      std::sort(r.begin(), r.end(), [](const Run& a, const Run& b) { return a.seed < b.seed; });
+  }
+
+  bool measureRun(Configuration& c, uint64_t seed, const fs::path& file, Run& run,
+                  const std::function<void(double)>& told) {
+    RenderSettings s = c.settings;
+    s.seed = seed, s.threads = plan_.threads, s.spp = maxSpp_;
+    run.seed = seed;
+    run.calibration = calibrate();
+    run.load = loadAverage();
+    const RgbImage& reference = experiment_.references[c.reference].image;
+    const auto record = [&](const FilmBuffer& film, const Clocks& time, const Counts& n) {
+      Checkpoint at;
+      at.spp = film.samples, at.time = time;
+      at.error = compareImages(toRgb(film), reference);
+      at.cameraRays = n.cameraRays;
+      at.rays = n.cameraRays + n.lobeRays + n.cosineRays + n.shadowRays;
+      run.checkpoints.push_back(at);
+    };
+    RenderObserver watch;
+    watch.stop = observer_.stop;
+    watch.progress = [&](const Progress& p) { told(p.fraction * s.spp / maxSpp_); };
+    Statistics st;
+    FilmBuffer film;
+    if (s.sampler == SamplerType::kStratified) {  // strata are of all samples: each checkpoint is a render of its own
+      for (const uint32_t n : experiment_.checkpoints) {
+        s.spp = n;
+        st = {};
+        film = render(built_, s, st, watch);
+        if (stopped()) return false;
+        record(film, {st.pilotSeconds + st.renderSeconds, st.pilotCpuSeconds + st.renderCpuSeconds}, st.counts);
+      }
+    } else {
+      watch.checkpoint = record;
+      film = render(built_, s, st, watch);
+      if (stopped()) return false;
+    }
+    run.pilotSeconds = st.pilotSeconds;
+    run.counts = st.counts;
+    run.image = fs::path(file).replace_extension(".exr");
+    std::vector<PassInfo> passes;
+    for (const PassInfo& p : passesFor(st.techniques))
+      if (p.group == "combined" || p.group == "variance" || p.group == "allocation") passes.push_back(p);
+    const ExrImage image = toPasses(film, passes, kLayer, built_.scene.zUp);
+    run.flip = flipError(rgbOf(image, run.image), reference);
+    writeExr(run.image, image, true);
+    writeFile(file, toJson(run).dump(2) + '\n');  // last: a run without it is done again
+    return true;
+  }
+
+  void tell(const StudyProgress& p) {
+    if (observer_.progress) observer_.progress(p);
+  }
+  static double expectedLeft(double fraction, double spent) {
+    return fraction > 0 ? spent * (1 - fraction) / fraction : 0;
+  }
+
+  const BuiltScene& built_;
+  const StudyPlan& plan_;
+  const StudyObserver& observer_;
+  Experiment experiment_;
+  uint32_t maxSpp_ = 0, referenceSpp_ = 0;
+  double start_;
+};
+
+}  // namespace
+
+Experiment measure(const BuiltScene& built, const StudyPlan& plan, const StudyObserver& observer) {
+  return Study(built, plan, observer).run();
+}
+
+}  // namespace wardmis

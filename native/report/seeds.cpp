@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/seeds.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace wardmis {
+namespace {
+
+size_t blocksAcross(int pixels) { return static_cast<size_t>((pixels + kBlock - 1) / kBlock); }
+
+// Means over blocks of a value per pixel.
+std::vector<double> blockMeans(int width, int height, const std::function<double(size_t)>& value, bool squaredWeights) {
+  const size_t across = blocksAcross(width);
+  std::vector<double> sum(across * blocksAcross(height)), count(sum.size());
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const size_t b = static_cast<size_t>(y / kBlock) * across + static_cast<size_t>(x / kBlock);
+      sum[b] += value(static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x));
+      count[b] += 1;
+    }
+  for (size_t b = 0; b < sum.size(); ++b) sum[b] /= squaredWeights ? count[b] * count[b] : count[b];
+  return sum;
+}
+
+double grey(const std::vector<float>& rgb, size_t pixel) {
+  return (double(rgb[3 * pixel]) + double(rgb[3 * pixel + 1]) + double(rgb[3 * pixel + 2])) / 3;
+}
+
+// Of the mean of three channels; as if they were one: they share their samples.
+double greyVariance(const std::vector<float>& variance, size_t pixel) {
+  double deviation = 0;
+  for (size_t c = 0; c < 3; ++c) deviation += std::sqrt(double(variance[3 * pixel + c]));
+  return deviation / 3 * (deviation / 3);
+}
+
+void spreadOverPixels(BiasTest& test, const std::vector<double>& z, int width, int height) {
+  test.z.resize(static_cast<size_t>(width) * static_cast<size_t>(height));
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      test.z[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)] = static_cast<float>(
+          z[static_cast<size_t>(y / kBlock) * blocksAcross(width) + static_cast<size_t>(x / kBlock)]);
+}
+
+BiasTest testBias(const std::vector<RgbImage>& images, const RgbImage& reference,
+                  const std::vector<float>& knownVariance) {
+  const double n = double(images.size());
+  const int w = reference.width, h = reference.height;
+  const size_t pixels = reference.pixels();
+  const std::vector<double> truth = blockMeans(
+      w, h, [&](size_t i) { return grey(reference.rgb, i); }, false);
+  std::vector<double> own(truth.size());
+  double ownImage = 0;
+  if (!knownVariance.empty()) {
+    own = blockMeans(
+        w, h, [&](size_t i) { return greyVariance(knownVariance, i); }, true);
+    for (size_t i = 0; i < pixels; ++i) ownImage += greyVariance(knownVariance, i);
+    ownImage /= double(pixels) * double(pixels);
+  }
+  std::vector<double> sum(truth.size()), squares(truth.size());
+  double imageSum = 0, imageSquares = 0;
+  for (const RgbImage& image : images) {
+    const std::vector<double> means = blockMeans(
+        w, h, [&](size_t i) { return grey(image.rgb, i); }, false);
+    for (size_t b = 0; b < means.size(); ++b) {
+      const double d = means[b] - truth[b];
+      sum[b] += d, squares[b] += d * d;
+    }
+    double d = 0;
+    for (size_t i = 0; i < pixels; ++i) d += grey(image.rgb, i) - grey(reference.rgb, i);
+    d /= double(pixels);
+    imageSum += d, imageSquares += d * d;
+  }
+  // the seeds' spread and the reference's own, added: Student's t with the seeds' degrees of freedom, which is careful
+  const auto tOf = [&](double s, double q, double extra) {
+    const double mean = s / n, variance = std::max(0.0, q / n - mean * mean) / (n - 1) + extra;
+    const double rounding = 1e-6 * std::abs(mean);  // images are floats
+    return mean == 0 ? 0 : mean / std::sqrt(variance + rounding * rounding);
+  };
+  BiasTest test;
+  std::vector<double> z(truth.size());
+  test.blocks = truth.size();
+  test.threshold = sidak(kBiasLevel, test.blocks);
+  for (size_t b = 0; b < truth.size(); ++b) {
+    z[b] = tOf(sum[b], squares[b], own[b]);
+    const double p = pOfStudent(z[b], n - 1);
+    test.smallestP = std::min(test.smallestP, p);
+    test.failed += p < test.threshold ? 1 : 0;
+  }
+  test.imageZ = tOf(imageSum, imageSquares, ownImage);
+  test.imageP = pOfStudent(test.imageZ, n - 1);
+  spreadOverPixels(test, z, w, h);
+  return test;
+}
+
+}  // namespace
+
+SeedStatistics seedStatistics(const std::vector<RgbImage>& images, const RgbImage& reference,
+                              const std::vector<float>& knownVariance) {
+  const size_t values = reference.rgb.size();
+  const double n = double(images.size());
+  SeedStatistics s;
+  std::vector<double> mean(values);
+  for (const RgbImage& image : images)
+    for (size_t i = 0; i < values; ++i) mean[i] += double(image.rgb[i]) / n;
+  std::vector<double> second(values), fourth(values);
+  std::vector<double> seedErrors;
+  for (const RgbImage& image : images) {
+    ImageError e = compareImages(image, reference);
+    seedErrors.push_back(e.relMse);
+    s.errors.push_back(std::move(e.relMsePixels));
+    double sum = 0;
+    for (size_t i = 0; i < values; ++i) {
+      const double d = double(image.rgb[i]) - mean[i], d2 = d * d, r = double(reference.rgb[i]);
+      second[i] += d2, fourth[i] += d2 * d2;
+      sum += d2 / (r * r + kRelMseEpsilon);
+    }
+    s.spread.push_back(sum / double(values) * n / (n - 1));
+  }
+  s.mean = {reference.width, reference.height, std::vector<float>(values)};
+  s.variance.resize(values);
+  double weights = 0, kurtosis = 0;
+  for (size_t i = 0; i < values; ++i) {
+    s.mean.rgb[i] = static_cast<float>(mean[i]);
+    s.variance[i] = static_cast<float>(second[i] / (n - 1));
+    if (!(second[i] > 1e-12 * mean[i] * mean[i])) continue;
+    const double r = double(reference.rgb[i]), weight = second[i] / (r * r + kRelMseEpsilon);
+    weights += weight;
+    kurtosis += weight * n * fourth[i] / (second[i] * second[i]);
+  }
+  // normal values have a mean sample kurtosis of 3 (n - 1)/(n + 1)
+  if (weights > 0) s.tail.kurtosis = kurtosis / weights * (n + 1) / (n - 1);
+
+  std::vector<double> perPixel(reference.pixels());
+  for (const std::vector<float>& e : s.errors)
+    for (size_t i = 0; i < perPixel.size(); ++i) perPixel[i] += double(e[i]);
+  const double total = std::accumulate(perPixel.begin(), perPixel.end(), 0.0);
+  const size_t top = std::max<size_t>(1, perPixel.size() / 1000);
+  std::nth_element(perPixel.begin(), perPixel.begin() + static_cast<std::ptrdiff_t>(top), perPixel.end(),
+                   std::greater<>());
+  if (total > 0)
+    s.tail.topShare =
+        std::accumulate(perPixel.begin(), perPixel.begin() + static_cast<std::ptrdiff_t>(top), 0.0) / total;
+  std::sort(seedErrors.begin(), seedErrors.end());
+  if (const double median = seedErrors[seedErrors.size() / 2]; median > 0)
+    s.tail.seedRatio = seedErrors.back() / median;
+  s.bias = testBias(images, reference, knownVariance);
+  return s;
+}
+
+BiasTest compareConverged(const Reference& a, const Reference& b) {
+  const int w = a.image.width, h = a.image.height;
+  BiasTest test;
+  const std::vector<double> difference = blockMeans(
+      w, h, [&](size_t i) { return grey(a.image.rgb, i) - grey(b.image.rgb, i); }, false);
+  const std::vector<double> variance = blockMeans(
+      w, h, [&](size_t i) { return greyVariance(a.variance, i) + greyVariance(b.variance, i); }, true);
+  std::vector<double> z(difference.size());
+  test.blocks = difference.size();
+  test.threshold = sidak(kBiasLevel, test.blocks);
+  double sum = 0, squares = 0;
+  for (size_t k = 0; k < z.size(); ++k) {
+    const double rounding = 1e-6 * std::abs(difference[k]);
+    z[k] = difference[k] == 0 ? 0 : difference[k] / std::sqrt(variance[k] + rounding * rounding);
+    const double p = pOfNormal(z[k]);
+    test.smallestP = std::min(test.smallestP, p);
+    test.failed += p < test.threshold ? 1 : 0;
+    sum += difference[k], squares += variance[k];
+  }
+  test.imageZ = sum == 0 ? 0 : sum / std::sqrt(squares);
+  test.imageP = pOfNormal(test.imageZ);
+  spreadOverPixels(test, z, w, h);
+  return test;
+}
+
+SlopeVerdict judgeSlope(const Interval& s, const std::optional<Interval>& bySamples, bool biased, bool heavy,
+                        bool independent) {
+  const std::string found = fmt::format("{:.2f} [{:.2f}, {:.2f}]", s.value, s.low, s.high);
+  if (s.contains(-1)) return {"none", "none", found + ": as Monte Carlo estimates without bias have it"};
+  if (s.high < -1) {
+    if (bySamples && bySamples->contains(-1))
+      return {"steeper", "overhead",
+              found + ": steeper against time than against samples, since the pilot's time is spread over ever more"};
+    if (!independent) return {"steeper", "sampler", found + ": steeper, since the sampler's points are spread evenly"};
+    return {"steeper", "unclear", found + ": steeper than independent samples should be, and the cause is not found"};
+  }
+  if (biased && heavy)
+    return {"shallower", "both",
+            found + ": shallower; the mean of the seeds is not the reference's, and few samples carry the error"};
+  if (biased)
+    return {"shallower", "bias", found + ": shallower, and the mean of the seeds is not the reference's: it is biased"};
+  if (heavy)
+    return {"shallower", "heavy tail",
+            found + ": shallower without a sign of bias: rare large samples carry the error (a heavy tail)"};
+  return {"shallower", "unclear", found + ": shallower, with no sign of bias or of a heavy tail"};
+}
+
+}  // namespace wardmis

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the last images of one configuration's seeds say together: their spread, whether their mean is the reference's,
+// and whether few samples carry the error.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "report/experiment.h"
+#include "report/resample.h"
+
+namespace wardmis {
+
+inline constexpr int kBlock = 8;             // pixels: side of the blocks that are tested for bias
+inline constexpr double kBiasLevel = 0.001;  // chance of a false alarm over all blocks of an image, and over its mean
+inline constexpr double kHeavyKurtosis = 6;  // of a pixel's values over the seeds; a normal distribution: 3
+inline constexpr double kHeavySeeds = 3;     // largest over median error of a seed
+
+// z-tests of the mean over seeds against the reference: blocks, each by Student's t over the seeds, Sidak over all of
+// them; and the image as a whole.
+struct BiasTest {
+  size_t blocks = 0, failed = 0;
+  double smallestP = 1, threshold = 0, imageZ = 0, imageP = 1;
+  std::vector<float> z;  // per pixel: of its block
+  bool biased() const { return failed > 0 || imageP < kBiasLevel; }
+};
+
+// How the squared error is spread. kurtosis: of a pixel's values over the seeds, pooled over pixels with the weight of
+// their relative variance, corrected so that normal values give 3.
+struct Tail {
+  double topShare = 0;   // of the squared relative error in the worst 0.1 % of the pixels
+  double seedRatio = 1;  // largest over median relMSE of a seed
+  double kurtosis = 3;
+  bool heavy() const { return kurtosis > kHeavyKurtosis || seedRatio > kHeavySeeds; }
+};
+
+struct SeedStatistics {
+  RgbImage mean;
+  std::vector<float> variance;             // per value, over the seeds
+  std::vector<std::vector<float>> errors;  // of each seed, per pixel: relMSE against the reference
+  std::vector<double> spread;  // of each seed: mean of (x - mean)^2 n/(n-1) / (r^2 + eps); their mean is the
+                               // relative variance
+  BiasTest bias;
+  Tail tail;
+
+  // Under a heavy tail a block that no large sample has met yet looks too dark and sure of it: the image alone counts.
+  bool biased() const { return tail.heavy() ? bias.imageP < kBiasLevel : bias.biased(); }
+};
+
+// At least two images of the reference's size. knownVariance: of the reference, may be empty.
+SeedStatistics seedStatistics(const std::vector<RgbImage>& images, const RgbImage& reference,
+                              const std::vector<float>& knownVariance);
+
+// The same test between two converged images whose variances are known (normal, not Student's).
+BiasTest compareConverged(const Reference& a, const Reference& b);
+
+// Why a slope is not -1.
+struct SlopeVerdict {
+  const char* flag = "none";   // none, steeper, shallower
+  const char* cause = "none";  // none, bias, heavy tail, both, sampler, overhead, unclear
+  std::string text;
+};
+// bySamples: the slope against samples instead of seconds; independent: the sampler's points are.
+SlopeVerdict judgeSlope(const Interval& slope, const std::optional<Interval>& bySamples, bool biased, bool heavy,
+                        bool independent);
+
+}  // namespace wardmis

@@ -1,0 +1,347 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""wardmis converge: its study on disk (resumed, stopped, refused), what it reports of renders whose error is known, and
+that its findings on the scenes of blend/ are those of the theory. Images do not depend on the machine, so that ratios of
+errors at equal samples are the same everywhere; nothing is asked of times but that they are there."""
+
+import csv
+import json
+import os
+import re
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import exr
+import numpy as np
+import OpenImageIO as oiio
+from command import BINARY, CommandTest
+
+
+def write_rgb(path, values):
+    spec = oiio.ImageSpec(values.shape[1], values.shape[0], 3, oiio.FLOAT)
+    file = oiio.ImageOutput.create(str(path))
+    file.open(str(path), spec)
+    file.write_image(np.ascontiguousarray(values, np.float32))
+    file.close()
+
+
+class Converge(CommandTest):
+    scenes = ("teapot", "veach", "stiff-mirror")
+
+    def study(self, *options, scene="teapot", folder="study", code=0, small=True, **more):
+        size = ("--resolution", "48x32") if small else ()
+        out = self.folder / folder
+        done = self.run_command("converge", self.scene(scene), "-o", out, *size, *map(str, options), code=code, **more)
+        report = json.loads((out / "report.json").read_text()) if code == 0 else None
+        return done, report
+
+    def quick(self, *options, seeds=4, **more):
+        return self.study("--max-spp", 8, "--seeds", seeds, "-c", "equal", "-c", "second-moment", *options, **more)
+
+    def of(self, report, name):
+        return next(c for c in report["configurations"] if c["name"] == name)
+
+    def test_a_study_leaves_what_the_documentation_lists(self):
+        done, report = self.quick("--title", "päth <b>")
+        folder = self.folder / "study"
+        for name in (
+            "study.json",
+            "reference.exr",
+            "report.json",
+            "report.html",
+            "curves.csv",
+            "configurations.csv",
+            "groups.csv",
+        ):
+            self.assertTrue((folder / name).is_file(), name)
+        self.assertEqual(len(list((folder / "runs" / "equal").glob("seed-*.exr"))), 4)
+        self.assertEqual(report["schema"], "wardmis-report-1")
+        self.assertEqual(report["checkpoints"], [1, 2, 4, 8])
+        self.assertIn("päth <b>", done.stdout)
+        page = (folder / "report.html").read_text()
+        self.assertIn("<title>päth &lt;b&gt;", page)
+        self.assertNotIn("{{", page.split("<script")[0])
+        for c in report["configurations"]:
+            self.assertEqual([at["spp"] for at in c["curve"]], [1, 2, 4, 8])
+            walls = [at["wall"]["mean"] for at in c["curve"]]
+            self.assertEqual(walls, sorted(walls))
+            self.assertGreater(walls[0], 0)
+        # CSV: the same numbers
+        with open(folder / "curves.csv") as f:
+            rows = list(csv.DictReader(f))
+        self.assertEqual(len(rows), 8)
+        self.assertAlmostEqual(float(rows[3]["relmse"]), self.of(report, "equal")["curve"][3]["relmse"]["mean"])
+
+    def test_metrics_of_a_run_are_those_of_its_image(self):
+        _, report = self.quick()
+        folder = self.folder / "study"
+        said = json.loads(
+            self.run_command("compare", folder / "runs/equal/seed-0001.exr", folder / "reference.exr", "--json").stdout
+        )
+        run = json.loads((folder / "runs/equal/seed-0001.json").read_text())
+        self.assertAlmostEqual(run["checkpoints"][-1]["relmse"], said["relmse"], delta=1e-6 * said["relmse"])
+        # and over the seeds, less the reference's own
+        runs = [json.loads(path.read_text()) for path in sorted((folder / "runs/equal").glob("*.json"))]
+        mean = np.mean([r["checkpoints"][-1]["mse"] for r in runs]) - report["reference"]["floor"]["mse"]
+        self.assertAlmostEqual(self.of(report, "equal")["curve"][-1]["mse"]["mean"], mean, delta=1e-6 * mean)
+
+    def test_a_run_is_the_render_of_its_seed(self):
+        self.quick()
+        self.render("--allocation", "second-moment", "--spp", "8", "--seed", "2")
+        own = exr.read(self.folder / "study/runs/second-moment/seed-0002.exr").passes
+        np.testing.assert_array_equal(own["Combined"], exr.read(self.out).passes["Combined"])
+
+    def test_what_is_done_is_not_done_again(self):
+        self.quick()
+        folder = self.folder / "study"
+        before = {path: path.stat().st_mtime_ns for path in folder.rglob("runs/*/*")}
+        (folder / "runs/equal/seed-0003.json").unlink()
+        self.quick(seeds=5)
+        after = {path: path.stat().st_mtime_ns for path in folder.rglob("runs/*/*")}
+        changed = {path.name for path in after if before.get(path) != after[path]}
+        self.assertEqual(changed, {"seed-0003.json", "seed-0003.exr", "seed-0005.json", "seed-0005.exr"})
+
+    def test_another_study_is_not_mixed_in(self):
+        self.quick()
+        study = ("converge", self.scene(), "-o", self.folder / "study", "--resolution", "48x32", "--seeds", "4")
+        self.refused(
+            2, *study, "--max-spp", "16", "-c", "equal", "-c", "second-moment", says=("another study", "max_spp")
+        )
+        self.refused(2, *study, "--max-spp", "8", "-c", "equal", says=("another study", "configurations"))
+
+    def test_stopped_it_reports_and_goes_on(self):
+        out = self.folder / "study"
+        command = [
+            BINARY,
+            "converge",
+            str(self.scene()),
+            "-o",
+            str(out),
+            "--resolution",
+            "64x48",
+            "--max-spp",
+            "64",
+            "--seeds",
+            "12",
+            "-c",
+            "equal",
+            "-c",
+            "variance",
+        ]
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        until = time.monotonic() + 60
+        while len(list(out.glob("runs/*/seed-*.json"))) < 5 and time.monotonic() < until:
+            time.sleep(0.02)
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130, said)
+        self.assertIn("goes on from there", said)
+        report = json.loads((out / "report.json").read_text())
+        self.assertFalse(report["complete"])
+        self.assertIn("stopped early", " ".join(report["finding"]))
+        done = len(list(out.glob("runs/*/seed-*.json")))
+        self.assertLess(done, 24)
+        self.run_command(*command[1:])
+        self.assertTrue(json.loads((out / "report.json").read_text())["complete"])
+        self.assertEqual(len(list(out.glob("runs/*/seed-*.json"))), 24)
+
+    def test_whoever_started_it_has_gone(self):
+        out = self.folder / "study"
+        process = subprocess.Popen(
+            [BINARY, "converge", str(self.scene()), "-o", str(out), "--max-spp", "4096", "--progress", "json", "--watch-stdin"],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+        )  # fmt: skip
+        first = json.loads(process.stdout.readline())
+        self.assertEqual(first["event"], "start")
+        self.assertEqual(json.loads(process.stdout.readline())["phase"], "reference")
+        process.stdin.close()
+        process.stdout.close()
+        self.assertEqual(process.wait(timeout=20), 130)
+
+    def test_progress_for_programs(self):
+        done, _ = self.quick("--progress", "json")
+        events = self.events(done.stdout)
+        self.assertEqual(events[0]["event"], "start")
+        self.assertEqual(events[-1]["event"], "done")
+        progress = [e for e in events if e["event"] == "progress"]
+        self.assertEqual([e["phase"] for e in progress][-1], "report")
+        fractions = [e["fraction"] for e in progress]
+        self.assertEqual(fractions, sorted(fractions))
+        self.assertTrue(all(e["left"] >= 0 for e in progress))
+
+    def test_runs_are_interleaved(self):
+        done, _ = self.quick("--progress", "json")
+        order = []
+        for e in self.events(done.stdout):
+            if e["event"] == "progress" and e["phase"] == "runs" and (e["configuration"], e["seed"]) not in order:
+                order.append((e["configuration"], e["seed"]))
+        names = [name for name, _ in order]
+        self.assertEqual(names, ["equal", "second-moment", "second-moment", "equal"] * 2)
+
+    def test_a_budget_is_kept(self):
+        start = time.monotonic()
+        _, report = self.study("--budget-seconds", 6, "--seeds", 4, "-c", "equal", "-c", "auto")
+        self.assertLess(time.monotonic() - start, 9)
+        self.assertGreaterEqual(report["checkpoints"][-1], 4)
+        self.refused(
+            2, "converge", self.scene(), "-o", self.folder / "poor", "--budget-seconds", "0.2", says=("give at least",)
+        )
+        self.assertFalse((self.folder / "poor" / "report.html").exists())
+
+    def test_a_given_reference_is_held_against(self):
+        self.render(
+            "--spp", "256", "--allocation", "equal", "--sampler", "independent", out=self.folder / "reference.exr"
+        )
+        _, report = self.quick("--reference", self.folder / "reference.exr")
+        self.assertEqual(report["reference"]["source"], "given")
+        self.assertGreater(report["reference"]["floor"]["relmse"], 0)
+        self.refused(2, "converge", self.scene(), "-o", self.folder / "b", "--reference", self.folder / "reference.exr", "--resolution", "24x16", says=("48 x 32",))  # fmt: skip
+
+    def test_each_sampler_and_integrator_has_its_place(self):
+        _, report = self.study(
+            "--max-spp", 8, "--seeds", 3, "-c", "equal", "-c", "strata:allocation=equal,sampler=stratified",
+            "-c", "direct:allocation=equal,integrator=direct,weights=power", "-c", "costly:allocation=auto,cost=1,1,2",
+        )  # fmt: skip
+        self.assertEqual(len(report["references"]), 2)
+        self.assertEqual(self.of(report, "direct")["reference"], "direct light")
+        self.assertEqual(self.of(report, "costly")["settings"]["cost"], [1, 1, 2])
+        errors = [at["relmse"]["mean"] for at in self.of(report, "strata")["curve"]]
+        self.assertEqual(errors, sorted(errors, reverse=True))
+        self.assertIn("only 3 seeds", " ".join(report["finding"]))
+
+    def test_mistakes_are_named(self):
+        out = ("-o", self.folder / "x", "--resolution", "48x32")
+        self.refused(2, "converge", self.scene(), *out, "-c", "equall", says=("equall", "second-moment"))
+        self.refused(2, "converge", self.scene(), *out, "-c", "a:allocation=equal,sampel=3", says=("sampel",))
+        self.refused(2, "converge", self.scene(), *out, "-c", "equal", "-c", "equal", says=("two configurations",))
+        self.refused(
+            2, "converge", self.scene(), *out, "--baseline", "best", says=("best", "none of the configurations")
+        )
+        self.refused(4, "converge", self.scene(), *out, "--max-spp", "4", "--seeds", "2", "--external", self.folder / "none.json", says=("none.json",))  # fmt: skip
+        (self.folder / "file").write_text("")
+        self.refused(4, "converge", self.scene(), "-o", self.folder / "file" / "x", says=("folder",))
+
+    def test_a_damaged_run_is_named(self):
+        self.quick()
+        (self.folder / "study/runs/equal/seed-0002.json").write_text("{")
+        self.refused(4, "converge", self.scene(), "-o", self.folder / "study", "--resolution", "48x32", "--max-spp", "8", "--seeds", "4", "-c", "equal", "-c", "second-moment", says=("seed-0002.json",))  # fmt: skip
+
+    def test_flip_is_reported_where_it_is_installed(self):
+        """The program of its authors, run by hand on the same images, says the same."""
+        flip = Path(os.environ["WARDMIS_FLIP"]) / "flip"
+        _, report = self.quick(env={**os.environ, "PATH": f"{flip.parent}:/usr/bin:/bin"})
+        self.assertEqual(report["metrics"][-1]["name"], "flip")
+        folder = self.folder / "study"
+        said = []
+        for seed in range(1, 5):
+            for name, path in (("r", folder / "reference.exr"), ("t", folder / f"runs/equal/seed-{seed:04}.exr")):
+                write_rgb(self.folder / f"{name}.exr", exr.read(path).passes["Combined"][..., :3])
+            command = [flip, "-r", "r.exr", "-t", "t.exr", "-v", "1", "-nexm", "-nerm"]
+            text = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, check=True).stdout
+            said.append(float(re.search(r"Mean: *([0-9.]+)", text)[1]))
+        self.assertAlmostEqual(self.of(report, "equal")["curve"][-1]["flip"]["mean"], np.mean(said), delta=2e-6)
+        # a program of the same name that is something else
+        other = self.folder / "bin" / "flip"
+        other.parent.mkdir()
+        other.write_text("#!/bin/sh\necho usage: flip file\n")
+        other.chmod(0o755)
+        _, report = self.quick(folder="b", env={**os.environ, "PATH": f"{other.parent}:/usr/bin:/bin"})
+        self.assertNotIn("flip", [m["name"] for m in report["metrics"]])
+
+    # ---- renders of another program
+
+    def manifest(self, scale=1.0, common=True, seeds=6):
+        """Renders of ours as if another program had made them, `scale` times as bright."""
+        folder = self.folder / "other"
+        folder.mkdir()
+
+        def image(name, *options):
+            self.render(*options, out=self.folder / "one.exr")
+            values = exr.read(self.folder / "one.exr").passes["Combined"][..., :3] * scale
+            write_rgb(folder / name, values)
+            return name
+
+        runs = [
+            {"seed": s, "spp": n, "wall": 0.01 * n, "cpu": 0.02 * n,
+             "path": image(f"s{s}-{n}.exr", "--spp", n, "--seed", 100 + s, "--allocation", "equal", "--sampler", "independent")}
+            for s in range(1, seeds + 1) for n in (2, 4, 8)
+        ]  # fmt: skip
+        reference = [image(f"r{k}.exr", "--spp", 128, "--seed", 900 + k, "--allocation", "equal") for k in range(3)]
+        path = folder / "manifest.json"
+        path.write_text(json.dumps({"name": "Other", "renderer": "Other 1.0", "notes": ["made up"], "common_reference": common,
+                                    "reference": {"images": reference, "spp": 128}, "runs": runs}))  # fmt: skip
+        return path
+
+    def test_another_renderer_that_agrees(self):
+        _, report = self.quick("--external", self.manifest())
+        other = self.of(report, "Other")
+        self.assertEqual([at["spp"] for at in other["curve"]], [2, 4, 8])
+        self.assertEqual(other["runs"], 6)
+        self.assertEqual(other["bias"]["verdict"], "none found")
+        self.assertIs(report["models"][0]["agree"], True, report["models"])
+
+    def test_a_biased_renderer_is_caught_and_named(self):
+        _, report = self.quick("--external", self.manifest(scale=1.1))
+        self.assertEqual(self.of(report, "Other")["bias"]["verdict"], "biased")
+        self.assertEqual(self.of(report, "equal")["bias"]["verdict"], "none found")
+        self.assertIs(report["models"][0]["agree"], False)
+        self.assertRegex(" ".join(report["finding"]), r"differs from the reference for Other")
+
+    def test_a_model_of_its_own_is_no_error(self):
+        _, report = self.quick("--external", self.manifest(scale=1.1, common=False))
+        other = self.of(report, "Other")
+        self.assertEqual(other["bias"]["verdict"], "none found")
+        model = report["models"][0]
+        self.assertIsNone(model["agree"])
+        self.assertAlmostEqual(model["difference"]["mean"]["g"], 0.1, delta=0.02)
+        self.assertIn("not an error", model["text"])
+
+    # ---- the finding and the theory
+
+    def groups(self, report, name, kind="object"):
+        return {g["name"]: g["error_ratio"] for g in self.of(report, name)["groups"] if g["kind"] == kind}
+
+    THEORY = (
+        "--integrator", "direct", "--sampler", "independent", "--samples-per-hit", 8, "--pilot-spp", 16, "--max-spp", 64,
+        "--min-fraction", 0.001, "-c", "equal", "-c", "variance", "-c", "second-moment",
+    )  # fmt: skip
+
+    def test_two_identical_configurations_are_a_tie(self):
+        _, report = self.study("--max-spp", 16, "--seeds", 8, "-c", "equal", "-c", "again:allocation=equal")
+        again = self.of(report, "again")
+        self.assertEqual(again["equal_samples"]["ratio"], {"mean": 1, "low": 1, "high": 1})
+        self.assertEqual(again["wins"]["better"] + again["wins"]["worse"], 0)
+        self.assertIn(again["time_to_target"]["verdict"], ("tie", "faster", "slower"))
+
+    def test_veach(self):
+        """Where a hit has one integral and two techniques, `variance` ties with `equal` (docs/theory.md); where a plate has two
+        that share their light samples, allocations gain, and `second-moment` the most."""
+        _, report = self.study(*self.THEORY, "--resolution", "72x48", scene="veach", small=False)
+        variance, second = self.groups(report, "variance"), self.groups(report, "second-moment")
+        for diffuse in ("Wall", "Floor"):
+            self.assertLess(variance[diffuse]["low"], 1.02)
+            self.assertGreater(variance[diffuse]["high"], 0.98)
+        for plate in ("Plate 2", "Plate 3", "Plate 4"):
+            self.assertLess(second[plate]["high"], 1, plate)
+        self.assertLess(self.of(report, "second-moment")["equal_samples"]["ratio"]["high"], 1)
+
+    def test_teapot(self):
+        _, report = self.study(*self.THEORY, "--resolution", "72x48", small=False)
+        ratio = self.of(report, "variance")["equal_samples"]["ratio"]
+        self.assertLess(abs(ratio["mean"] - 1), 0.05, ratio)
+
+    def test_stiff_mirror(self):
+        _, report = self.study(*self.THEORY, "--resolution", "48x32", scene="stiff-mirror", small=False)
+        ratio = self.of(report, "variance")["equal_samples"]["ratio"]
+        self.assertLess(abs(ratio["mean"] - 1), 0.05, ratio)
+        for c in report["configurations"]:
+            self.assertEqual(c["counts"], {"nan": 0, "infinite": 0, "negative": 0})
+
+    def test_a_variance_pass_that_can_be_believed(self):
+        """With independent samples the runs' own variance is that over the seeds."""
+        _, report = self.study("--max-spp", 64, "--sampler", "independent", "--integrator", "direct", "-c", "equal")
+        prediction = self.of(report, "equal")["prediction"]
+        self.assertLess(prediction["pooled"]["low"], 1.05)
+        self.assertGreater(prediction["pooled"]["high"], 0.95)
+        self.assertEqual(sum(prediction["counts"]) > 0, True)

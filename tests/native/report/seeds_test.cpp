@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An honest estimator, a biased one and one of a heavy tail, as images of known distributions: each is told for what it
+// is. Seeds are fixed.
+#include "report/seeds.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace wardmis {
+namespace {
+
+constexpr int kWidth = 64, kHeight = 48;
+constexpr size_t kSeeds = 16;
+
+RgbImage truth() {
+  RgbImage image{kWidth, kHeight, {}};
+  for (int i = 0; i < kWidth * kHeight * 3; ++i) image.rgb.push_back(0.2f + 0.1f * static_cast<float>(i % 7));
+  return image;
+}
+
+// Mean over `samples` of noise of mean 0.
+template <class Noise>
+std::vector<RgbImage> images(Noise noise, int samples, uint64_t seed, float shift = 0, int shiftedColumns = 0) {
+  std::mt19937_64 random(seed);
+  std::vector<RgbImage> all;
+  for (size_t s = 0; s < kSeeds; ++s) {
+    RgbImage image = truth();
+    for (size_t i = 0; i < image.pixels(); ++i) {
+      double e = 0;
+      for (int k = 0; k < samples; ++k) e += noise(random) / samples;
+      for (size_t c = 0; c < 3; ++c)
+        image.rgb[3 * i + c] += static_cast<float>(e) + (static_cast<int>(i % kWidth) < shiftedColumns ? shift : 0);
+    }
+    all.push_back(std::move(image));
+  }
+  return all;
+}
+
+double normalNoise(std::mt19937_64& random) { return std::normal_distribution<double>(0, 0.5)(random); }
+// once in 20000 a sample of 200: mean 0.01, taken off
+double rareNoise(std::mt19937_64& random) {
+  return (std::uniform_real_distribution<double>()(random) < 5e-5 ? 200 : 0) - 0.01 + 0.05 * normalNoise(random);
+}
+
+TEST(Seeds, AnHonestEstimatorIsLeftAlone) {
+  const SeedStatistics s = seedStatistics(images(normalNoise, 16, 1), truth(), {});
+  EXPECT_FALSE(s.biased()) << s.bias.smallestP;
+  EXPECT_FALSE(s.tail.heavy()) << s.tail.kurtosis;
+  EXPECT_NEAR(s.tail.kurtosis, 3, 0.1);
+  double variance = 0;
+  for (const float v : s.variance) variance += double(v) / double(s.variance.size());
+  EXPECT_NEAR(variance, 0.25 / 16, 0.25 / 16 * 0.02);
+}
+
+TEST(Seeds, ABiasedOneIsCaught) {
+  // 2 % of the light, in a strip of the image alone, well under the noise of any single pixel
+  const SeedStatistics s = seedStatistics(images(normalNoise, 64, 2, 0.03f, 16), truth(), {});
+  EXPECT_TRUE(s.biased());
+  EXPECT_GT(s.bias.failed, 0u);
+  EXPECT_FALSE(s.tail.heavy()) << s.tail.kurtosis;
+  EXPECT_GT(s.bias.z[0], 5);
+  EXPECT_LT(std::abs(s.bias.z[kWidth - 1]), 7);
+}
+
+TEST(Seeds, AHeavyTailIsNoBias) {
+  const SeedStatistics s = seedStatistics(images(rareNoise, 16, 3), truth(), {});
+  EXPECT_TRUE(s.tail.heavy()) << s.tail.kurtosis;
+  EXPECT_FALSE(s.biased()) << s.bias.failed << " blocks, image z " << s.bias.imageZ;
+  // and with a bias on top it is both
+  const SeedStatistics both = seedStatistics(images(rareNoise, 16, 3, 0.05f, kWidth), truth(), {});
+  EXPECT_TRUE(both.tail.heavy());
+  EXPECT_TRUE(both.biased()) << both.bias.imageZ;
+}
+
+TEST(Seeds, TheReferencesOwnNoiseIsNoBias) {
+  RgbImage noisy = truth();
+  std::mt19937_64 random(4);
+  for (size_t i = 0; i < noisy.pixels(); ++i) {
+    const auto e = static_cast<float>(normalNoise(random) * 0.4);
+    for (size_t c = 0; c < 3; ++c) noisy.rgb[3 * i + c] += e;
+  }
+  const std::vector<float> variance(noisy.rgb.size(), 0.04f);
+  const std::vector<RgbImage> seeds = images(normalNoise, 64, 5);
+  EXPECT_FALSE(seedStatistics(seeds, noisy, variance).biased());
+  EXPECT_TRUE(seedStatistics(seeds, noisy, {}).biased()) << "taken for exact it is caught";
+}
+
+TEST(Seeds, FalseAlarmsAreAsRareAsStated) {
+  // 200 images without bias at a level of 2 x 0.001: more than 3 alarms in fewer than 1e-3 of all test seeds
+  int alarms = 0;
+  for (uint64_t k = 0; k < 200; ++k) alarms += seedStatistics(images(normalNoise, 1, 100 + k), truth(), {}).biased();
+  EXPECT_LE(alarms, 3);
+}
+
+TEST(Seeds, ConvergedImagesAreCompared) {
+  Reference a, b;
+  a.image = images(normalNoise, 256, 6)[0], b.image = images(normalNoise, 256, 7)[0];
+  a.variance.assign(a.image.rgb.size(), 0.25f / 256), b.variance = a.variance;
+  EXPECT_FALSE(compareConverged(a, b).biased());
+  for (float& v : b.image.rgb) v += 0.02f;
+  EXPECT_TRUE(compareConverged(a, b).biased());
+}
+
+TEST(Seeds, SlopesAreJudged) {
+  const auto cause = [](double low, double high, bool biased, bool heavy, bool independent,
+                        std::optional<Interval> bySamples = {}) {
+    return std::string(judgeSlope({(low + high) / 2, low, high}, bySamples, biased, heavy, independent).cause);
+  };
+  EXPECT_EQ(cause(-1.05, -0.97, true, true, true), "none");
+  EXPECT_EQ(cause(-0.9, -0.8, true, false, true), "bias");
+  EXPECT_EQ(cause(-0.9, -0.8, false, true, true), "heavy tail");
+  EXPECT_EQ(cause(-0.9, -0.8, true, true, true), "both");
+  EXPECT_EQ(cause(-0.9, -0.8, false, false, true), "unclear");
+  EXPECT_EQ(cause(-1.4, -1.2, false, false, false), "sampler");
+  EXPECT_EQ(cause(-1.4, -1.2, false, false, true), "unclear");
+  EXPECT_EQ(cause(-1.4, -1.2, false, false, true, Interval{-1, -1.1, -0.9}), "overhead");
+}
+
+}  // namespace
+}  // namespace wardmis
