@@ -93,11 +93,17 @@ class Background(PanelTest):
         # the scene is the user's, and has not been rendered by this Blender
         self.assertEqual(self.scene.render.engine, "WARDMIS")
 
-    def test_same_scene_goes_on_and_a_changed_one_begins(self):
+    def test_same_comparison_goes_on_and_another_begins(self):
         first = self.compare()
+        self.settings.seeds = 3
         self.assertEqual(self.compare(), first)
+        self.settings.samples = 4
+        second = self.compare()
         self.camera.location.z = 4
-        self.assertNotEqual(self.compare(), first)
+        third = self.compare()
+        self.scene.wardmis.max_depth = 2
+        fourth = self.compare()
+        self.assertEqual(len({first, second, third, fourth}), 4)
 
     def test_one_at_a_time(self):
         with mock.patch.dict(os.environ, {"WARDMIS_FAKE": "slow"}):
