@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import sys
 import time
@@ -25,6 +26,13 @@ from wardmis.comparison.report import VERDICTS, Report
 class PanelTest(ComparisonTest):
     def setUp(self) -> None:
         super().setUp()
+        # as a user's Blender finds its add-ons
+        scripts = self.folder.parent / "scripts"
+        (scripts / "addons").mkdir(parents=True)
+        (scripts / "addons" / "wardmis").symlink_to(ADDON, target_is_directory=True)
+        patch = mock.patch.dict(os.environ, {"BLENDER_USER_SCRIPTS": str(scripts)})
+        patch.start()
+        self.addCleanup(patch.stop)
         self.addCleanup(job.forget)
         self.addCleanup(properties.forget_report)
         self.settings = self.scene.wardmis_comparison
@@ -79,12 +87,7 @@ class Background(PanelTest):
 
     def test_with_cycles_in_a_blender_of_its_own(self):
         self.settings.use_cycles = True
-        # as a user's Blender finds its add-ons
-        scripts = self.folder.parent / "scripts"
-        (scripts / "addons").mkdir(parents=True)
-        (scripts / "addons" / "wardmis").symlink_to(ADDON, target_is_directory=True)
-        with mock.patch.dict(os.environ, {"BLENDER_USER_SCRIPTS": str(scripts)}):
-            folder = self.compare()
+        folder = self.compare()
         self.assertIn("Cycles", properties.report().image_names)
         manifest = folder / "cycles" / "manifest.json"
         arguments = self.calls()[-1]
@@ -92,6 +95,22 @@ class Background(PanelTest):
         self.assertFalse((Path(bpy.app.tempdir) / "wardmis-comparison" / "scene.blend").exists())
         # the scene is the user's, and has not been rendered by this Blender
         self.assertEqual(self.scene.render.engine, "WARDMIS")
+
+    def test_cancel_ends_the_other_blender(self):
+        self.settings.use_cycles = True
+        self.settings.samples, self.settings.cycles_seeds = 4096, 100
+        bpy.ops.wardmis.compare()
+        deadline = time.monotonic() + 60
+        while job.current().fraction == 0:
+            self.assertLess(time.monotonic(), deadline, job.current().text)
+            job._look()
+            time.sleep(0.05)
+        bpy.ops.wardmis.compare_cancel()
+        done = self.wait(10)
+        self.assertEqual((done.failure, done.stopping), ("", True))
+        self.assertEqual(self.calls(), [])
+        manifest = json.loads((done.folder / "cycles" / "manifest.json").read_text())
+        self.assertGreater(len(manifest["runs"]), 0)
 
     def test_same_comparison_goes_on_and_another_begins(self):
         first = self.compare()

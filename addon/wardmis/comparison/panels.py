@@ -63,6 +63,8 @@ def _draw_table(box: Any, report: Any) -> None:
         kind = " of CPU time" if report.clock == "cpu" else ""
         baseline = report.data.get("baseline", "")
         draw_text(box, f"{report.metric} after {seconds:.3g} s{kind}; its ratio to that of {baseline}, 95 %:")
+    if not report.data.get("complete", True):
+        draw_text(box, "Of a comparison that was stopped", "INFO")
     table = box.column(align=True)
     for row in rows:
         line = table.row()
