@@ -141,11 +141,12 @@ class Renderer:
     def exit_code(self) -> int | None:
         return self._process.poll()
 
-    def close_input(self) -> None:
-        """Asks a process that watches its input to end, with what it has done so far; returns at once."""
-        with contextlib.suppress(OSError):
-            if self._process.stdin is not None:
-                self._process.stdin.close()
+    def interrupt(self) -> None:
+        """Asks it to end with what it has done so far, as Ctrl-C does; returns at once."""
+        if os.name == "nt":  # there is no such signal for a single process
+            self._process.terminate()
+        else:
+            self._process.send_signal(signal.SIGINT)
 
     def events(self, wait_seconds: float) -> list[dict[str, Any]]:
         """The events so far; waits for the first one up to `wait_seconds`."""

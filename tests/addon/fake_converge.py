@@ -108,6 +108,8 @@ def report(options, labels, size):
         "finding": ["The figures are invented."],
         "baseline": labels[0][0],
         "metric": "relmse",
+        "metrics": [{"name": "mse", "label": "MSE"}, {"name": "relmse", "label": "relMSE"}],
+        "clock": "wall",
         "seeds": list(range(options.seed, options.seed + options.seeds)),
         "checkpoints": checkpoints,
         **size,
@@ -118,7 +120,7 @@ def report(options, labels, size):
 def configuration(name, renderer, checkpoints):
     factor = ALLOCATIONS.get(name, 1.5)
     error = FIRST_ERROR * factor
-    verdict = "tie" if factor == 1 else "faster" if factor < 1 else "slower"
+    verdict = "baseline" if factor == 1 else "faster" if factor < 1 else "slower"
     return {
         "name": name,
         "renderer": renderer,
@@ -142,10 +144,10 @@ def configuration(name, renderer, checkpoints):
             "ratio": interval(factor),
             "verdict": verdict,
         },
-        "equal_time": {"seconds": 0.5, "relmse": interval(error / 50), "ratio": interval(factor)},
+        "equal_time": {"seconds": 0.5, "error": interval(error / 50), "ratio": interval(factor)},
         "equal_samples": {
             "spp": checkpoints[-1],
-            "relmse": interval(error / checkpoints[-1]),
+            "error": interval(error / checkpoints[-1]),
             "ratio": interval(factor),
         },
     }

@@ -55,6 +55,8 @@ def main():
             log.write(json.dumps({"pid": os.getpid(), "arguments": sys.argv[1:]}) + "\n")
     if options.watch_stdin:
         threading.Thread(target=stop_when_input_ends, daemon=True).start()
+    if converges:
+        signal.signal(signal.SIGINT, lambda *_: os._exit(130))
     scene = read_scene(options.scene)
     film = scene["extensions"]["WARDMIS_scene"]["film"]
     if mode == "exit3":

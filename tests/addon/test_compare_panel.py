@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import sys
 import time
@@ -17,14 +18,21 @@ import wardmis
 from comparison_support import SMALL, ComparisonTest
 from support import ADDON
 from wardmis import scripting
-from wardmis.comparison import colours, images, job, operators, plot, properties
+from wardmis.comparison import colours, images, job, operators, panels, plot, properties
 from wardmis.comparison.exr import read_pass
-from wardmis.comparison.report import Report
+from wardmis.comparison.report import VERDICTS, Report
 
 
 class PanelTest(ComparisonTest):
     def setUp(self) -> None:
         super().setUp()
+        # as a user's Blender finds its add-ons
+        scripts = self.folder.parent / "scripts"
+        (scripts / "addons").mkdir(parents=True)
+        (scripts / "addons" / "wardmis").symlink_to(ADDON, target_is_directory=True)
+        patch = mock.patch.dict(os.environ, {"BLENDER_USER_SCRIPTS": str(scripts)})
+        patch.start()
+        self.addCleanup(patch.stop)
         self.addCleanup(job.forget)
         self.addCleanup(properties.forget_report)
         self.settings = self.scene.wardmis_comparison
@@ -79,12 +87,7 @@ class Background(PanelTest):
 
     def test_with_cycles_in_a_blender_of_its_own(self):
         self.settings.use_cycles = True
-        # as a user's Blender finds its add-ons
-        scripts = self.folder.parent / "scripts"
-        (scripts / "addons").mkdir(parents=True)
-        (scripts / "addons" / "wardmis").symlink_to(ADDON, target_is_directory=True)
-        with mock.patch.dict(os.environ, {"BLENDER_USER_SCRIPTS": str(scripts)}):
-            folder = self.compare()
+        folder = self.compare()
         self.assertIn("Cycles", properties.report().image_names)
         manifest = folder / "cycles" / "manifest.json"
         arguments = self.calls()[-1]
@@ -93,11 +96,33 @@ class Background(PanelTest):
         # the scene is the user's, and has not been rendered by this Blender
         self.assertEqual(self.scene.render.engine, "WARDMIS")
 
-    def test_same_scene_goes_on_and_a_changed_one_begins(self):
+    def test_cancel_ends_the_other_blender(self):
+        self.settings.use_cycles = True
+        self.settings.samples, self.settings.cycles_seeds = 4096, 100
+        bpy.ops.wardmis.compare()
+        deadline = time.monotonic() + 60
+        while job.current().fraction == 0:
+            self.assertLess(time.monotonic(), deadline, job.current().text)
+            job._look()
+            time.sleep(0.05)
+        bpy.ops.wardmis.compare_cancel()
+        done = self.wait(10)
+        self.assertEqual((done.failure, done.stopping), ("", True))
+        self.assertEqual(self.calls(), [])
+        manifest = json.loads((done.folder / "cycles" / "manifest.json").read_text())
+        self.assertGreater(len(manifest["runs"]), 0)
+
+    def test_same_comparison_goes_on_and_another_begins(self):
         first = self.compare()
+        self.settings.seeds = 3
         self.assertEqual(self.compare(), first)
+        self.settings.samples = 4
+        second = self.compare()
         self.camera.location.z = 4
-        self.assertNotEqual(self.compare(), first)
+        third = self.compare()
+        self.scene.wardmis.max_depth = 2
+        fourth = self.compare()
+        self.assertEqual(len({first, second, third, fourth}), 4)
 
     def test_one_at_a_time(self):
         with mock.patch.dict(os.environ, {"WARDMIS_FAKE": "slow"}):
@@ -235,10 +260,13 @@ class Results(PanelTest):
         report = Report(self.folder)
         rows = report.rows()
         self.assertEqual([r.name for r in rows], ["equal", "variance", "second-moment", "auto"])
-        self.assertEqual(rows[1].ratio, "0.80 (0.72 to 0.88)")
-        self.assertEqual((rows[0].verdict, rows[1].verdict), ("no difference found", "faster"))
+        self.assertEqual(rows[1].ratio, "0.80 (0.72–0.88)")
+        self.assertEqual((rows[0].verdict, rows[1].verdict), ("", "faster"))
+        self.assertEqual(report.metric, "relMSE")
         curve = report.curves()[0]
         self.assertEqual(len(curve.seconds), 5)
+        report.data["clock"] = "cpu"
+        self.assertEqual(report.curves()[0].seconds[0], 2 * curve.seconds[0])
         self.assertTrue(all(low < error < high for low, error, high in zip(curve.low, curve.error, curve.high)))
 
     def test_figures_that_are_not_known(self):
@@ -249,6 +277,7 @@ class Results(PanelTest):
         self.assertEqual((report.rows()[0].error, report.rows()[0].ratio, report.rows()[0].verdict), ("", "", ""))
         self.assertEqual(len(report.curves()[0].seconds), 3)
         self.assertIsNone(report.equal_seconds)
+        self.assertIsNone(report.target)
 
 
 class Settings(unittest.TestCase):
@@ -269,6 +298,11 @@ class Settings(unittest.TestCase):
         defaults = properties.WARDMIS_PG_comparison.bl_rna.properties
         self.assertEqual(set(defaults["allocations"].default_flag), set(DEFAULT_CONFIGURATIONS))
         self.assertEqual((defaults["seeds"].default, defaults["samples"].default), (Study().seeds, Study().max_spp))
+
+    def test_every_verdict_has_a_sign(self):
+        self.assertEqual(set(panels.VERDICT_ICONS), set(VERDICTS.values()))
+        known = bpy.types.UILayout.bl_rna.functions["label"].parameters["icon"].enum_items.keys()
+        self.assertLessEqual(set(panels.VERDICT_ICONS.values()), set(known))
 
 
 class Colours(unittest.TestCase):

@@ -322,6 +322,9 @@ class Failures(ComparisonTest):
         with mock.patch.dict(os.environ, {"WARDMIS_BINARY": "/nowhere"}):
             self.check("there is no renderer at /nowhere")
 
+    def test_too_few_samples(self):
+        self.check("1 samples per pixel make no curve; take at least 2", max_spp=1)
+
     def test_too_few_seeds(self):
         self.check("1 seeds cannot tell how sure", seeds=1)
         self.check("1 seeds of Cycles cannot tell", cycles_seeds=1, cycles=True)
@@ -430,7 +433,7 @@ class CommandLine(unittest.TestCase):
         command = [bpy.app.binary_path, *arguments]
         return subprocess.run(command, env={**os.environ, **environment}, capture_output=True, text=True, timeout=120)
 
-    SMALL = ("--seeds", "2", "--max-spp", "1", "--cycles-reference-spp", "1")
+    SMALL = ("--seeds", "2", "--max-spp", "2", "--cycles-reference-spp", "1")
     SCRIPT = str(HERE.parents[1] / "blend" / "compare.py")
 
     def test_script(self):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Cycles' part of a comparison in a Blender of its own, so that the one that the user works in stays usable.
 
-command() is for the one who starts it, main() runs in it. It prints the events of the command `wardmis converge`, and ends when its
-input is closed.
+command() is for the one who starts it, main() runs in it. It prints the events of the command `wardmis converge`, and ends when it
+is interrupted or its input is closed: each render is kept as soon as it is done.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 import dataclasses
 import json
 import os
+import signal
 import sys
 import threading
 from pathlib import Path
@@ -43,6 +44,7 @@ def command(
 
 
 def main() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # Blender itself would end after a second one alone
     events = os.fdopen(os.dup(1), "w", encoding="utf-8")
     with open(os.devnull, "wb") as nowhere:  # what Blender prints meanwhile
         os.dup2(nowhere.fileno(), 1)

@@ -72,7 +72,7 @@ def _scale(height: int, top: float) -> np.ndarray:
     strip[:, gap : gap + bar] = inferno(np.linspace(1, 0, height))[:, None]
     for k, label in enumerate(labels):
         middle = round((1 - k / 4) * (height - 1))
-        row = min(max(middle - 2 * size, 0), max(0, height - 5 * size))
+        row = min(max(middle - 2 * size, size), max(0, height - 6 * size))
         _write(strip, label, row, gap + bar + gap // 2, size)
     return strip
 

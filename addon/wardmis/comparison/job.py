@@ -25,7 +25,7 @@ SHOWN_IN = {"PROPERTIES", "IMAGE_EDITOR"}
 
 @dataclass
 class Stage:
-    """A process that prints JSON lines and watches its input."""
+    """A process that prints JSON lines, ends with what it has when interrupted, and at once when its input is closed."""
 
     name: str  # what messages call it
     command: list[str]
@@ -72,7 +72,7 @@ class Job:
                 for event in process.finish():
                     self._take(event)
             except RendererError as error:
-                if not self.stopping:
+                if not self.stopping:  # else it is how the interrupted end
                     self._fail(str(error))
                     return
         process.stop()
@@ -107,7 +107,7 @@ class Job:
         self.stopping = True
         self.text = "Stopping"
         if self._process is not None:
-            self._process.close_input()
+            self._process.interrupt()
 
     def stop(self) -> None:
         """Ends everything now."""

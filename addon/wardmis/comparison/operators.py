@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+import hashlib
 import re
 import shutil
 import tempfile
@@ -64,9 +66,7 @@ def begin(context: Any) -> job.Job:
         _check_unsaved_images()
     staging = Path(bpy.app.tempdir) / "wardmis-comparison"
     exported = prepare(staging, study).scene
-    # the same scene goes on in the same folder, a changed one begins another
-    name = re.sub(r"[^\w.-]+", "_", study.title) or "scene"
-    folder = home(scene) / f"{name}-{read_scene_file(exported).sha256[:8]}"
+    folder = home(scene) / _name(study, settings, scene.wardmis, exported)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         shutil.move(exported, folder / SCENE_NAME)
@@ -89,6 +89,15 @@ def begin(context: Any) -> job.Job:
     return job.start(folder, stages, _finished, temporary)
 
 
+def _name(study: Study, settings: Any, render_settings: Any, exported: Path) -> str:
+    """The same comparison goes on in the same folder, also with more seeds; another one begins its own."""
+    what = arguments(dataclasses.replace(study, seeds=0), render_settings, Outcome(Path(), Path()))
+    what += [read_scene_file(exported).sha256, f"{settings.use_cycles} {settings.cycles_as_is}"]
+    digest = hashlib.sha256("\0".join(what).encode()).hexdigest()
+    title = re.sub(r"[^\w.-]+", "_", study.title)  # of any letters, but no signs that a folder's name cannot have
+    return f"{title}-{digest[:8]}"
+
+
 def _check_unsaved_images() -> None:
     """The other Blender reads images from their files."""
     for image in bpy.data.images:
@@ -108,7 +117,7 @@ def show(folder: Path) -> None:
     report = properties.show_report(folder)
     curves = report.curves()
     if plot.available() and curves:
-        drawn = plot.draw(curves, str(report.data.get("title", "")), str(report.data.get("metric", "relmse")))
+        drawn = plot.draw(curves, str(report.data.get("title", "")), report.metric, report.clock)
         images.put(images.PLOT, drawn, "error against time", srgb=True)
     _put_into_editors(properties.results().view)
 

@@ -11,6 +11,12 @@ from .. import compat
 from ..panels import RenderPanel
 from . import job, operators, properties
 
+VERDICT_ICONS = {
+    "faster": "CHECKMARK",
+    "slower": "X",
+    "no difference found": "REMOVE",
+    "target not reached": "QUESTION",
+}
 TEXT_WIDTH = 7  # pixels of a letter, about, at a scale of the interface of 1
 
 
@@ -40,35 +46,42 @@ def draw_results(layout: Any) -> None:
     column.prop(chosen, "b")
     column.prop(chosen, "top")
     row = layout.row(align=True)
-    for name, label, _ in properties.VIEWS:
+    for name, label in (("A", "A"), ("B", "B"), ("DIFFERENCE", "Diff")):
         row.operator(view, text=label, depress=chosen.view == name).view = name
     if chosen.failure:
         draw_text(layout, chosen.failure, "ERROR")
     _draw_table(layout.box(), report)
-    row = layout.row(align=True)
-    row.operator(operators.WARDMIS_OT_compare_report.bl_idname, icon="URL")
-    row.operator(view, text="Plot", icon="GRAPH").view = "PLOT"
+    column = layout.column(align=True)
+    column.operator(view, text="Plot", icon="GRAPH").view = "PLOT"
+    column.operator(operators.WARDMIS_OT_compare_report.bl_idname, icon="URL")
 
 
 def _draw_table(box: Any, report: Any) -> None:
-    seconds = report.equal_seconds
-    at = f" at {seconds:.3g} s" if seconds is not None else ""
-    box.label(text=f"Ratio to {report.data.get('baseline', '')} with 95 % interval{at}")
-    grid = box.column(align=True)
-    for columns in (
-        ("", "relMSE", "Ratio", "To the target"),
-        *((r.name, r.error, r.ratio, r.verdict) for r in report.rows()),
-    ):
-        split = grid.split(factor=0.26)
-        split.label(text=columns[0])
-        rest = split.split(factor=0.22)
-        rest.label(text=columns[1])
-        rest = rest.split(factor=0.55)
-        rest.label(text=columns[2])
-        rest.label(text=columns[3])
+    """Two lines a configuration: the sidebar is narrow."""
+    seconds, target, rows = report.equal_seconds, report.target, report.rows()
+    if seconds is not None:
+        kind = " of CPU time" if report.clock == "cpu" else ""
+        baseline = report.data.get("baseline", "")
+        draw_text(box, f"{report.metric} after {seconds:.3g} s{kind}; its ratio to that of {baseline}, 95 %:")
+    if not report.data.get("complete", True):
+        draw_text(box, "Of a comparison that was stopped", "INFO")
+    table = box.column(align=True)
+    for row in rows:
+        line = table.row()
+        line.label(text=row.name, icon=VERDICT_ICONS.get(row.verdict, "BLANK1"))
+        value = line.row()
+        value.alignment = "RIGHT"
+        value.label(text=row.error)
+        if row.ratio:
+            table.label(text=f"× {row.ratio}", icon="BLANK1")
+    legend = box.column(align=True)
+    legend.active = False
+    for verdict, icon in VERDICT_ICONS.items():
+        if any(row.verdict == verdict for row in rows):
+            legend.label(text=f"to {target:.3g}: {verdict}" if target is not None else verdict, icon=icon)
 
 
-def draw_text(layout: Any, text: str, icon: str) -> None:
+def draw_text(layout: Any, text: str, icon: str = "NONE") -> None:
     """Over as many lines as it needs: labels are cut off."""
     region, scale = bpy.context.region, bpy.context.preferences.system.ui_scale
     letters = max(20, int(region.width / (TEXT_WIDTH * scale)) - 6) if region else 60
@@ -79,7 +92,7 @@ def draw_text(layout: Any, text: str, icon: str) -> None:
         lines[-1] += f" {word}" if lines[-1] else word
     column = layout.column(align=True)
     for i, line in enumerate(lines):
-        column.label(text=line, icon=icon if i == 0 else "BLANK1")
+        column.label(text=line, icon=icon if i == 0 or icon == "NONE" else "BLANK1")
 
 
 class WARDMIS_RENDER_PT_compare(RenderPanel, bpy.types.Panel):
@@ -88,7 +101,6 @@ class WARDMIS_RENDER_PT_compare(RenderPanel, bpy.types.Panel):
 
     def draw(self, context: Any) -> None:
         settings = context.scene.wardmis_comparison
-        self.layout.enabled = True
         body = self.layout.column()
         body.enabled = not job.running()
         body.use_property_split = True

@@ -41,7 +41,7 @@ def available() -> bool:
     return not bpy.app.background
 
 
-def draw(curves: Sequence[Curve], title: str, metric: str) -> np.ndarray:
+def draw(curves: Sequence[Curve], title: str, metric: str, clock: str) -> np.ndarray:
     """(HEIGHT, WIDTH, 3), rows from the top, sRGB from 0 to 1. Only where available()."""
     offscreen = gpu.types.GPUOffScreen(WIDTH, HEIGHT)
     try:
@@ -51,9 +51,7 @@ def draw(curves: Sequence[Curve], title: str, metric: str) -> np.ndarray:
             with gpu.matrix.push_pop(), gpu.matrix.push_pop_projection():
                 gpu.matrix.load_identity()
                 gpu.matrix.load_projection_matrix(compat.pixel_projection(WIDTH, HEIGHT))
-                gpu.state.blend_set("ALPHA")
-                _Plot(curves, title, metric).draw()
-                gpu.state.blend_set("NONE")
+                _Plot(curves, title, metric, clock).draw()
             buffer = framebuffer.read_color(0, 0, WIDTH, HEIGHT, 4, 0, "UBYTE")
     finally:
         offscreen.free()
@@ -63,8 +61,8 @@ def draw(curves: Sequence[Curve], title: str, metric: str) -> np.ndarray:
 
 
 class _Plot:
-    def __init__(self, curves: Sequence[Curve], title: str, metric: str) -> None:
-        self.curves, self.title, self.metric = curves, title, metric
+    def __init__(self, curves: Sequence[Curve], title: str, metric: str, clock: str) -> None:
+        self.curves, self.title, self.metric, self.clock = curves, title, metric, clock
         self.x = _Axis([s for c in curves for s in c.seconds], LEFT, WIDTH - RIGHT)
         self.y = _Axis([e for c in curves for e in [*c.low, *c.high]], BOTTOM, HEIGHT - TOP)
         self.shader = compat.uniform_colour_shader()
@@ -97,14 +95,16 @@ class _Plot:
             _text(label, LEFT - 12, y - 7, "RIGHT")
         corners = [(LEFT, BOTTOM), (WIDTH - RIGHT, BOTTOM), (WIDTH - RIGHT, HEIGHT - TOP), (LEFT, HEIGHT - TOP)]
         self._shape("LINE_STRIP", [*corners, corners[0]], INK)
-        _text("seconds", (LEFT + WIDTH - RIGHT) / 2, 20, "CENTRE")
+        _text("CPU seconds" if self.clock == "cpu" else "seconds", (LEFT + WIDTH - RIGHT) / 2, 20, "CENTRE")
         _text(f"{self.title}: {self.metric} against time, bands of 95 %", LEFT, HEIGHT - 38)
 
     def _shape(self, kind: str, points: Sequence[tuple[float, float]], colour: Sequence[float]) -> None:
         batch = batch_for_shader(self.shader, kind, {"pos": [(x, y, 0.0) for x, y in points]})
+        gpu.state.blend_set("ALPHA")  # each time: text ends without
         self.shader.bind()
         self.shader.uniform_float("color", colour)
         batch.draw(self.shader)
+        gpu.state.blend_set("NONE")
 
     def _square(self, x: float, y: float, half: float, colour: Sequence[float]) -> None:
         corners = [(x - half, y - half), (x + half, y - half), (x - half, y + half), (x + half, y + half)]

@@ -47,7 +47,7 @@ class WARDMIS_PG_comparison(bpy.types.PropertyGroup):
     )
     stop_by: EnumProperty(name="Stop by", description="What ends the comparison", items=STOPS, default="samples")
     samples: IntProperty(
-        name="Samples", description="The largest number of camera samples per pixel", default=64, min=1, soft_max=4096
+        name="Samples", description="The largest number of camera samples per pixel", default=64, min=2, soft_max=4096
     )
     seconds: FloatProperty(
         name="Seconds",

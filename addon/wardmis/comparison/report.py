@@ -10,6 +10,7 @@ from typing import Any
 
 SCHEMA = "wardmis-report-1"
 REFERENCE = "reference"  # its image, among those of the configurations
+# "baseline", of the one that the others are compared with, is none
 VERDICTS = {"faster": "faster", "slower": "slower", "tie": "no difference found", "not reached": "target not reached"}
 
 
@@ -18,7 +19,7 @@ class Row:
     """A configuration in words: nothing where a figure is not known."""
 
     name: str
-    error: str = ""  # relMSE at equal time
+    error: str = ""  # at equal time
     ratio: str = ""  # to the baseline's, with its interval
     verdict: str = ""  # on the time to the target
 
@@ -73,6 +74,22 @@ class Report:
     def equal_seconds(self) -> float | None:
         return next((c["equal_time"]["seconds"] for c in self.configurations if c.get("equal_time")), None)
 
+    @property
+    def target(self) -> float | None:
+        """The error whose time the verdicts are about."""
+        return next((c["time_to_target"]["target"] for c in self.configurations if c.get("time_to_target")), None)
+
+    @property
+    def clock(self) -> str:
+        """Which time counts: "wall", or "cpu" where the machine was too busy for the other."""
+        return str(self.data.get("clock", "wall"))
+
+    @property
+    def metric(self) -> str:
+        """As it is written."""
+        name = self.data.get("metric", "relmse")
+        return next((m["label"] for m in self.data.get("metrics", []) if m["name"] == name), str(name))
+
     def rows(self) -> list[Row]:
         return [_row(c) for c in self.configurations]
 
@@ -82,9 +99,9 @@ class Report:
         for c in self.configurations:
             curve = Curve(c["name"], [], [], [], [])
             for point in c.get("curve", []):
-                wall, error = point.get("wall"), point.get(self.data.get("metric", "relmse"))
-                if wall and error and wall["mean"] > 0 and error["mean"] > 0:
-                    curve.seconds.append(wall["mean"])
+                seconds, error = point.get(self.clock), point.get(self.data.get("metric", "relmse"))
+                if seconds and error and seconds["mean"] > 0 and error["mean"] > 0:
+                    curve.seconds.append(seconds["mean"])
                     curve.error.append(error["mean"])
                     # an interval may reach below zero; the band then ends where it can still be seen
                     curve.low.append(max(error["low"], 0.1 * error["mean"]))
@@ -97,10 +114,10 @@ class Report:
 def _row(c: dict[str, Any]) -> Row:
     row = Row(c["name"])
     equal_time = c.get("equal_time") or {}
-    if equal_time.get("relmse"):
-        row.error = f"{equal_time['relmse']['mean']:.3g}"
+    if equal_time.get("error"):
+        row.error = f"{equal_time['error']['mean']:.3g}"
     ratio = equal_time.get("ratio")
     if ratio:
-        row.ratio = f"{ratio['mean']:.2f} ({ratio['low']:.2f} to {ratio['high']:.2f})"
+        row.ratio = f"{ratio['mean']:.2f} ({ratio['low']:.2f}–{ratio['high']:.2f})"
     row.verdict = VERDICTS.get(str((c.get("time_to_target") or {}).get("verdict")), "")
     return row

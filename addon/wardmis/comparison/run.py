@@ -22,6 +22,7 @@ SCENE_NAME = "scene.glb"
 CYCLES_FOLDER = "cycles"
 REFERENCE_FACTOR = 8  # samples of each of Cycles' reference images, over the largest number of a run
 FEWEST_SEEDS = 2
+FEWEST_SAMPLES = 2
 POLL_SECONDS = 0.2
 
 
@@ -91,8 +92,8 @@ def prepare(folder: Path, study: Study) -> Outcome:
         raise RuntimeError(
             f"WardMIS: {study.seeds} seeds cannot tell how sure a figure is; take at least {FEWEST_SEEDS}"
         )
-    if study.max_spp < 1:
-        raise RuntimeError(f"WardMIS: {study.max_spp} samples per pixel are none; take at least 1")
+    if study.max_spp < FEWEST_SAMPLES:
+        raise RuntimeError(f"WardMIS: {study.max_spp} samples per pixel make no curve; take at least {FEWEST_SAMPLES}")
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
