@@ -206,7 +206,7 @@ class Reporter {
     double target = 0, time = 1e300;
     for (const Measured& m : measured_) {
       const Curve c = curvesOf(m).mean(everySeed(m.runs->size()));
-      time = std::min(time, c.time.back());
+      for (const Run& run : *m.runs) time = std::min(time, run.checkpoints.back().time.*clock_);  // within every curve
       if (m.seeds.biased() && &m != base_) continue;  // it may have a limit of its own
       target = std::max({target, c.error[c.error.size() - std::min<size_t>(2, c.error.size())],
                          kFloorFactor * floorOf(*m.reference, *metric_)});
