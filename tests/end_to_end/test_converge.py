@@ -3,7 +3,9 @@
 that its findings on the scenes of blend/ are those of the theory. Images do not depend on the machine, so that ratios of
 errors at equal samples are the same everywhere; nothing is asked of times but that they are there."""
 
+import base64
 import csv
+import io
 import json
 import os
 import re
@@ -16,6 +18,7 @@ import exr
 import numpy as np
 import OpenImageIO as oiio
 from command import BINARY, CommandTest
+from PIL import Image
 
 
 def write_rgb(path, values):
@@ -72,6 +75,35 @@ class Converge(CommandTest):
             rows = list(csv.DictReader(f))
         self.assertEqual(len(rows), 8)
         self.assertAlmostEqual(float(rows[3]["relmse"]), self.of(report, "equal")["curve"][3]["relmse"]["mean"])
+
+    def embedded(self, report, key):
+        """An image of the page: its description, and the bytes of its PNG as (height, width, 3)."""
+        page = (self.folder / "study" / "report.html").read_text()
+        i = next(i for i, image in enumerate(report["images"]) if image["key"] == key)
+        text = re.search(rf'id="image-{i}">([^<]*)<', page)[1]
+        pixels = np.asarray(Image.open(io.BytesIO(base64.b64decode(text))).convert("RGB"), np.float64)
+        return report["images"][i], pixels
+
+    def test_the_page_holds_the_images(self):
+        _, report = self.quick()
+        folder = self.folder / "study"
+        # radiance: a shared exponent, eight bits for the largest channel
+        about, pixels = self.embedded(report, "reference")
+        self.assertEqual(pixels.shape, (2 * about["height"], about["width"], 3))
+        values = pixels[: about["height"]] * 2.0 ** (pixels[about["height"] :, :, :1] - 136)
+        truth = exr.read(folder / "reference.exr").passes["Combined"][..., :3]
+        self.assertLess(np.max(np.abs(values - truth) / truth.max(axis=-1, keepdims=True)), 0.5 / 127)
+        # scalars: sixteen bits, here of a logarithm
+        about, pixels = self.embedded(report, "equal/error")
+        values = 10 ** (about["low"] + (about["high"] - about["low"]) * (256 * pixels[..., 0] + pixels[..., 1]) / 65534)
+        truth = exr.read(folder / "images" / "equal-error.exr").passes["Combined"][..., 0]
+        inside = (truth > 10 ** about["low"]) & (truth < 10 ** about["high"])
+        self.assertGreater(inside.mean(), 0.5)
+        np.testing.assert_allclose(values[inside], truth[inside], rtol=1e-4)
+        # shares
+        _, pixels = self.embedded(report, "equal/allocation")
+        hit = pixels.sum(axis=-1) > 0
+        np.testing.assert_allclose(pixels.sum(axis=-1)[hit], 255, atol=2)
 
     def test_metrics_of_a_run_are_those_of_its_image(self):
         _, report = self.quick()
