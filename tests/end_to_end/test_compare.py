@@ -22,9 +22,7 @@ else:
     sys.path[:0] = [names[0]]
     import cycles_scenes
     cycles_scenes.make(scene)
-render = bpy.context.scene.render
-render.resolution_x, render.resolution_y, render.resolution_percentage = 72, 48, 100
-wardmis.compare(folder + "/study", configurations=["equal", "auto"], max_spp=16, seeds=6, cycles_reference_spp=1024)
+wardmis.compare(folder + "/study", resolution=(72, 48), configurations=["equal", "auto"], max_spp=16, seeds=6, cycles_reference_spp=512)
 """
 
 
@@ -80,11 +78,15 @@ class Compare(unittest.TestCase):
                 "-c",
                 "equal",
                 "--no-cycles",
+                "--resolution",
+                "48x32",
             ]
             done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, stdin=subprocess.DEVNULL)
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
             self.assertTrue((out / "report.html").is_file())
             self.assertIn("report.html", done.stdout)
+            self.assertIn("On teapot", done.stdout)
+            self.assertEqual(json.loads((out / "report.json").read_text())["width"], 48)
             done = subprocess.run(
                 [ROOT / "dev", "compare", "none.blend", "-o", out],
                 cwd=ROOT,

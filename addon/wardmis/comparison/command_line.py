@@ -5,7 +5,9 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import json
 import os
+import re
 import sys
 import time
 from collections.abc import Iterator
@@ -50,9 +52,17 @@ def parser(program: str) -> argparse.ArgumentParser:
         "--cycles-reference-spp", type=int, metavar="N", help="of each of its reference images (8 x --max-spp)"
     )
     result.add_argument("--as-is", action="store_true", help="Cycles with the file's settings, biases included")
+    result.add_argument("--resolution", type=_size, metavar="WxH", help="instead of the file's")
     result.add_argument("--title", help="of the report (the file's name)")
     result.add_argument("--threads", type=int, metavar="T", help="of both renderers (the scene's, else all)")
     return result
+
+
+def _size(text: str) -> tuple[int, int]:
+    match = re.fullmatch(r"(\d+)x(\d+)", text)
+    if not match or min(map(int, match.groups())) < 4:
+        raise argparse.ArgumentTypeError(f"'{text}' is no WIDTHxHEIGHT, as in 480x270")
+    return int(match[1]), int(match[2])
 
 
 def main(words: list[str], program: str = "wardmis compare") -> int:
@@ -77,6 +87,7 @@ def main(words: list[str], program: str = "wardmis compare") -> int:
                 cycles_reference_spp=options.cycles_reference_spp,
                 as_is=options.as_is,
                 title=options.title,
+                resolution=options.resolution,
                 threads=options.threads,
                 progress=watch,
             )
@@ -85,6 +96,8 @@ def main(words: list[str], program: str = "wardmis compare") -> int:
         print(f"error: {error}", file=sys.stderr)
         return 1
     watch.end()
+    with open(outcome.report_json, encoding="utf-8") as file:
+        print(*json.load(file)["finding"], sep="\n")
     print(f"{outcome.report_html}")
     return 0
 

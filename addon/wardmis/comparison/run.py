@@ -16,6 +16,7 @@ from ..preferences import renderer_path
 from ..process import Renderer, RendererError
 from .converge import DEFAULT_CONFIGURATIONS, STOPPED, Outcome, Study, arguments
 from .cycles import CyclesPlan, Progress, render_cycles
+from .overrides import Setting, overridden
 from .scene_file import read_scene_file
 
 SCENE_NAME = "scene.glb"
@@ -44,6 +45,7 @@ def compare(
     target: float | None = None,
     title: str | None = None,
     threads: int | None = None,
+    resolution: tuple[int, int] | None = None,
     progress: Callable[[dict[str, Any]], None] | None = None,
 ) -> Outcome:
     """Compares configurations of WardMIS, and Cycles, on the current scene, frame and view layer; leaves everything in `output`.
@@ -52,6 +54,7 @@ def compare(
     seeds            independent renders of each; cycles_seeds: of Cycles (as many)
     max_spp          renders have 1, 2, 4 ... max_spp samples per pixel
     budget_seconds   instead of max_spp; with Cycles, half of it is Cycles'
+    resolution       width and height instead of the scene's
     as_is            Cycles with the scene's settings for it, else with everything off that biases its image
     progress         is called with each event, a dictionary as in the command's JSON lines
     The others are the command's options (docs/command.md). The same call again goes on where the last one was stopped.
@@ -73,17 +76,29 @@ def compare(
         threads_of(scene) if threads is None else threads,
     )
     tell = progress or (lambda _event: None)
-    outcome = prepare(Path(bpy.path.abspath(os.fspath(output))).absolute(), study)
-    try:
-        command = [str(renderer_path())]  # before Cycles takes its time
-    except RendererError as error:
-        raise RuntimeError(f"WardMIS: {error}") from error
-    if cycles:
-        plan, study = divide(study, cycles_seeds, cycles_reference_spp, as_is)
-        outcome.manifest = render_cycles(outcome.folder / CYCLES_FOLDER, read_scene_file(outcome.scene), plan, tell)
-    command += arguments(study, scene.wardmis, outcome)
-    _converge(command, outcome, tell)
-    return outcome
+    with overridden(_resolution(scene, resolution)):
+        outcome = prepare(Path(bpy.path.abspath(os.fspath(output))).absolute(), study)
+        try:
+            command = [str(renderer_path())]  # before Cycles takes its time
+        except RendererError as error:
+            raise RuntimeError(f"WardMIS: {error}") from error
+        if cycles:
+            plan, study = divide(study, cycles_seeds, cycles_reference_spp, as_is)
+            outcome.manifest = render_cycles(outcome.folder / CYCLES_FOLDER, read_scene_file(outcome.scene), plan, tell)
+        command += arguments(study, scene.wardmis, outcome)
+        _converge(command, outcome, tell)
+        return outcome
+
+
+def _resolution(scene: Any, size: tuple[int, int] | None) -> list[Setting]:
+    if size is None:
+        return []
+    render = scene.render
+    return [
+        (render, "resolution_x", size[0]),
+        (render, "resolution_y", size[1]),
+        (render, "resolution_percentage", 100),
+    ]
 
 
 def prepare(folder: Path, study: Study) -> Outcome:
