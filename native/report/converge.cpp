@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/converge.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <bit>
+#include <cerrno>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -50,6 +54,26 @@ void makeFolder(const fs::path& path) {
                 "choose another");
 }
 
+// Keeps other processes out of the study.
+class FolderLock {
+ public:
+  explicit FolderLock(const fs::path& folder) : folder_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    if (folder_ >= 0 && flock(folder_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+      close(folder_);
+      throw Error(ExitCode::kFile, fmt::format("{}: another process is at work on this study", folder.string()),
+                  "wait for it, or choose another folder");
+    }
+  }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+  ~FolderLock() {
+    if (folder_ >= 0) close(folder_);
+  }
+
+ private:
+  int folder_;
+};
+
 // Which light the images of these settings converge to.
 std::string estimates(const RenderSettings& s) {
   return s.integrator == Integrator::kDirect || s.maxDepth == 1 ? "direct light"
@@ -79,6 +103,7 @@ class Study {
   Experiment run() {
     checkNames();
     makeFolder(plan_.folder);
+    const FolderLock lock(plan_.folder);
     identify();
     Experiment& e = experiment_;
     for (uint32_t n = 1; n < maxSpp_; n *= 2) e.checkpoints.push_back(n);

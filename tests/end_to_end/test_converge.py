@@ -187,6 +187,7 @@ class Converge(CommandTest):
         first = json.loads(process.stdout.readline())
         self.assertEqual(first["event"], "start")
         self.assertEqual(json.loads(process.stdout.readline())["phase"], "reference")
+        self.refused(4, "converge", self.scene(), "-o", out, "--max-spp", "4096", says=("another process",))
         process.stdin.close()
         process.stdout.close()
         self.assertEqual(process.wait(timeout=20), 130)
