@@ -23,7 +23,7 @@ def rel_mse(image: Pixels, reference: Pixels) -> float:
 def rel_mse_trimmed(image: Pixels, reference: Pixels) -> float:
     """Without the 0.1 % of the pixels that are worst: a few fireflies must not hide how the rest fares."""
     squares = np.sort(relative_squares(image, reference), axis=None)
-    return float(squares[: squares.size - squares.size // 1000].mean())
+    return float(squares[: squares.size - -(-squares.size // 1000)].mean())
 
 
 def reference_noise(reference: Pixels, variance: Pixels) -> float:

@@ -33,6 +33,15 @@ struct Options {
   bool watchStdin = false;
 };
 
+// As a shell takes it.
+std::string shellQuoted(const std::string& word) {
+  constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_=:,./+";
+  if (!word.empty() && word.find_first_not_of(kPlain) == word.npos) return word;
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? "'\\''" : std::string(1, c);
+  return out + "'";
+}
+
 // "ALLOCATION", or "NAME:key=value,key=value".
 Configuration configuration(const std::string& spec, const SettingOptions& base) {
   const size_t colon = spec.find(':');
@@ -40,6 +49,11 @@ Configuration configuration(const std::string& spec, const SettingOptions& base)
   c.name = spec.substr(0, colon);
   c.settings = base.with(colon == spec.npos ? "allocation=" + spec : spec.substr(colon + 1));
   c.described = toJson(c.settings);
+  try {
+    json(c.name).dump();
+  } catch (const json::exception&) {
+    throw Error(ExitCode::kUsage, "--configuration: a name is no UTF-8", "use letters that your terminal shows");
+  }
   if (c.name.empty())
     throw Error(ExitCode::kUsage, fmt::format("--configuration '{}' has no name", spec), "give NAME:key=value");
   return c;
@@ -163,12 +177,12 @@ Verb addConverge(CLI::App& app) {
       ->capture_default_str();
   app.add_flag("--watch-stdin", o->watchStdin, "stop when standard input is closed");
   return [o, &app] {
-    std::string command = "wardmis converge " + o->scene;
+    std::string command = "wardmis converge " + shellQuoted(o->scene);
     for (const CLI::Option* option : app.get_options([](const CLI::Option* x) { return x->count() > 0; }))
       if (!option->get_lnames().empty() && option->get_lnames()[0] != "progress" &&
           option->get_lnames()[0] != "watch-stdin")
         for (const std::string& value : option->results())
-          command += fmt::format(" --{} {}", option->get_lnames()[0], value);
+          command += fmt::format(" --{} {}", option->get_lnames()[0], shellQuoted(value));
     return run(*o, command);
   };
 }

@@ -208,8 +208,13 @@ class Reporter {
       const Curve c = curvesOf(m).mean(everySeed(m.runs->size()));
       for (const Run& run : *m.runs) time = std::min(time, run.checkpoints.back().time.*clock_);  // within every curve
       if (m.seeds.biased() && &m != base_) continue;  // it may have a limit of its own
+      // and what its last error may be, as far as its seeds tell
+      const Curves curves = curvesOf(m);
+      const auto last = Bootstrap(curves.seeds()).interval([&](std::span<const uint32_t> draw) {
+        return std::optional(curves.mean(draw, curves.checkpoints() - 1).error.back());
+      });
       target = std::max({target, c.error[c.error.size() - std::min<size_t>(2, c.error.size())],
-                         kFloorFactor * floorOf(*m.reference, *metric_)});
+                         last ? 1.02 * last->high : 0, kFloorFactor * floorOf(*m.reference, *metric_)});
     }
     target_ = e_.target.value_or(target > 0 ? roundUp(target) : 1e-3);
     time_ = time;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "report/analysis.h"
 
@@ -12,9 +13,13 @@ namespace {
 using nlohmann::json;
 
 std::string number(double x) { return fmt::format("{:.3g}", x); }
+// Two decimals, or as many more as keep a limit that is not 1 from looking like it.
 std::string interval(const json& i) {
-  return fmt::format("{:.2f} [{:.2f}, {:.2f}]", i["mean"].get<double>(), i["low"].get<double>(),
-                     i["high"].get<double>());
+  const double mean = i["mean"], low = i["low"], high = i["high"];
+  int decimals = 2;
+  const auto looksLikeOne = [&](double x) { return x != 1 && std::abs(x - 1) < 0.5 * std::pow(10, -decimals); };
+  while (decimals < 4 && (looksLikeOne(low) || looksLikeOne(high))) ++decimals;
+  return fmt::format("{:.{}f} [{:.{}f}, {:.{}f}]", mean, decimals, low, decimals, high, decimals);
 }
 
 std::string list(const std::vector<std::string>& parts) {
@@ -34,6 +39,7 @@ std::vector<std::string> finding(const json& r) {
   std::vector<std::pair<double, std::string>> faster;  // by ratio
   double secondLow = 1;                                // lower end of the intervals of all but the best
   json best;
+  bool baseUnreached = false;
   std::string target;
   for (const json& c : r["configurations"]) {
     const std::string name = c["name"];
@@ -41,9 +47,10 @@ std::vector<std::string> finding(const json& r) {
     if (c["tail"]["heavy"] == true) heavy.push_back(name);
     const json& t = c["time_to_target"];
     target = number(t["target"]);
+    if (name == base) baseUnreached = t["seconds"].is_null();
     if (name == base) continue;
     if (t["verdict"] == "not reached") {
-      unreached.push_back(name);
+      if (t["seconds"].is_null()) unreached.push_back(name);
       continue;
     }
     const std::string text = fmt::format("{} {}", name, interval(t["ratio"]));
@@ -73,6 +80,9 @@ std::vector<std::string> finding(const json& r) {
                       title, metric, target, base, clock, seeds, list(texts)));
       if (faster.size() > 1 && best["time_to_target"]["ratio"]["high"] < secondLow)
         said.push_back(fmt::format("The fastest is {}.", best["name"].get<std::string>()));
+    } else if (baseUnreached) {
+      said.push_back(fmt::format("On {}, {} itself does not surely reach a {} of {}: nothing can be compared with it.",
+                                 title, base, metric, target));
     } else {
       said.push_back(
           fmt::format("On {}, no configuration reaches a {} of {} sooner than {} (95 % intervals over {} seeds).",
@@ -80,14 +90,15 @@ std::vector<std::string> finding(const json& r) {
     }
     if (!ties.empty()) said.push_back(fmt::format("No difference from {} is found for {}.", base, list(ties)));
     if (!slower.empty()) said.push_back(fmt::format("Slower than {}: {}.", base, list(slower)));
-    if (!unreached.empty())
-      said.push_back(fmt::format("Within its samples, {} did not reach that error.", list(unreached)));
+    if (!unreached.empty() && !baseUnreached)
+      said.push_back(fmt::format("That error is not surely reached by {}.", list(unreached)));
   } else {
     const json& curve = r["configurations"][0]["curve"];
     const json& last = curve.back();
-    said.push_back(fmt::format("On {}, {} reaches a {} of {} after {} s ({} samples per pixel, {} seeds).", title, base,
-                               metric, number(last[key]["mean"]), number(last["wall"]["mean"]), last["spp"].get<int>(),
-                               seeds));
+    said.push_back(fmt::format("On {}, {} reaches a {} of {} after {} s of {} ({} samples per pixel, {} seeds).", title,
+                               base, metric, number(last[key]["mean"]),
+                               number(last[r["clock"] == "cpu" ? "cpu" : "wall"]["mean"]), clock,
+                               last["spp"].get<int>(), seeds));
   }
   if (!best.is_null() && best["equal_samples"].is_object() && best["equal_samples"]["ratio"].is_object())
     said.push_back(fmt::format("At equal samples the error of {} is {} of that of {}.", best["name"].get<std::string>(),

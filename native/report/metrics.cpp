@@ -16,7 +16,7 @@ std::span<const MetricInfo> allMetrics() {
       MetricInfo{"mse", "MSE", "mean (x − r)²", 0, &Metrics::mse, true},
       MetricInfo{"relmse", "relMSE", "mean (x − r)² / (r² + ε)", kRelMseEpsilon, &Metrics::relMse, true},
       MetricInfo{"relmse_trimmed", "relMSE without the largest 0.1 %",
-                 "mean (x − r)² / (r² + ε) without the pixels of the largest 0.1 %", kRelMseEpsilon,
+                 "mean (x − r)² / (r² + ε) without the pixels of the largest 0.1 %, at least one", kRelMseEpsilon,
                  &Metrics::relMseTrimmed, false},
       MetricInfo{"mape", "MAPE", "mean |x − r| / (|r| + ε)", kMapeEpsilon, &Metrics::mape, false},
       MetricInfo{"smape", "SMAPE", "mean 2 |x − r| / (|x| + |r| + ε)", kMapeEpsilon, &Metrics::smape, false},
@@ -48,8 +48,9 @@ ImageError compareImages(const RgbImage& image, const RgbImage& reference) {
   const double n = 3.0 * static_cast<double>(std::max<size_t>(1, pixels));
   e.mse /= n, e.relMse /= n, e.mape /= n, e.smape /= n;
   std::vector<float> sorted = e.relMsePixels;
-  const size_t keep = pixels - pixels / 1000;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(keep == pixels ? pixels - 1 : keep),
+  const size_t keep = pixels - (pixels + 999) / 1000;
+  std::nth_element(sorted.begin(),
+                   sorted.begin() + static_cast<std::ptrdiff_t>(std::min(keep, std::max<size_t>(1, pixels) - 1)),
                    sorted.end());
   double kept = 0;
   for (size_t i = 0; i < keep; ++i) kept += double(sorted[i]);

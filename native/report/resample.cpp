@@ -27,6 +27,7 @@ std::optional<Interval> Bootstrap::interval(const Statistic& statistic) const {
   const auto draw = [&](size_t row) { return statistic({draws_.data() + row * n_, n_}); };
   const std::optional<double> own = draw(0);
   if (!own || !std::isfinite(*own)) return {};
+  if (n_ < kFewestDrawn) return jackknife(*own, statistic);
   const size_t rows = draws_.size() / std::max<size_t>(1, n_) - 1;
   std::vector<double> values;
   values.reserve(rows);
@@ -40,6 +41,29 @@ std::optional<Interval> Bootstrap::interval(const Statistic& statistic) const {
     return values[i] + (x - double(i)) * (values[std::min(i + 1, values.size() - 1)] - values[i]);
   };
   return Interval{*own, at(tail_), at(1 - tail_)};
+}
+
+std::optional<Interval> Bootstrap::jackknife(double own, const Statistic& statistic) const {
+  if (n_ < 2) return {};
+  std::vector<double> without;
+  for (uint32_t left = 0; left < n_; ++left) {
+    std::vector<uint32_t> draw;
+    for (uint32_t i = 0; i < n_; ++i)
+      if (i != left) draw.push_back(i);
+    const auto v = statistic(draw);
+    if (!v || !std::isfinite(*v)) return {};
+    without.push_back(*v);
+  }
+  const bool positive = own > 0 && std::all_of(without.begin(), without.end(), [](double v) { return v > 0; });
+  if (positive)
+    for (double& v : without) v = std::log(v);
+  double mean = 0, squares = 0;
+  for (const double v : without) mean += v / double(n_);
+  for (const double v : without) squares += (v - mean) * (v - mean);
+  const double reach = boost::math::quantile(boost::math::students_t(double(n_) - 1), 0.975) *
+                       std::sqrt((double(n_) - 1) / double(n_) * squares);
+  if (positive) return Interval{own, own * std::exp(-reach), own * std::exp(reach)};
+  return Interval{own, own - reach, own + reach};
 }
 
 Interval Bootstrap::mean(std::span<const double> values) const {

@@ -20,18 +20,25 @@ struct Interval {
 // A bootstrap over n repetitions: a statistic is a function of the indices of those drawn. The same draws serve every
 // statistic, so that those of several configurations on the same seeds are paired. Percentile intervals, with the
 // percentiles expanded for small n: Phi(-sqrt(n/(n-1)) t_{.025, n-1}) instead of .025 (Hesterberg 2015, "What teachers
-// should know about the bootstrap", section 5.3), since plain ones cover too little.
+// should know about the bootstrap", section 5.3), since plain ones cover too little. Fewer than kFewestDrawn
+// repetitions have too few different draws for that: there intervals are Student's t with the jackknife's standard
+// error (Efron and Tibshirani 1993, chapter 11), of the logarithm where the statistic is positive.
+inline constexpr size_t kFewestDrawn = 8;
+
 class Bootstrap {
  public:
   explicit Bootstrap(size_t n, uint64_t seed = 1, size_t resamples = 2000);
 
   using Statistic = std::function<std::optional<double>(std::span<const uint32_t>)>;  // none: not defined on this draw
 
-  // None where the statistic is not defined on the sample itself, or on more than 2 % of the draws.
+  // None where the statistic is not defined on the sample itself, or on more than 2 % of the draws (any of the
+  // jackknife's).
   std::optional<Interval> interval(const Statistic& statistic) const;
   Interval mean(std::span<const double> values) const;  // of n values
 
  private:
+  std::optional<Interval> jackknife(double own, const Statistic& statistic) const;
+
   size_t n_;
   double tail_;                  // the lower percentile, as a fraction
   std::vector<uint32_t> draws_;  // n a row; row 0 is the sample itself

@@ -10,6 +10,8 @@
 namespace wardmis {
 namespace {
 
+constexpr double kUnsureSlope = 1;  // width of an interval that says nothing
+
 size_t blocksAcross(int pixels) { return static_cast<size_t>((pixels + kBlock - 1) / kBlock); }
 
 // Means over blocks of a value per pixel.
@@ -138,7 +140,7 @@ SeedStatistics seedStatistics(const std::vector<RgbImage>& images, const RgbImag
   for (const std::vector<float>& e : s.errors)
     for (size_t i = 0; i < perPixel.size(); ++i) perPixel[i] += double(e[i]);
   const double total = std::accumulate(perPixel.begin(), perPixel.end(), 0.0);
-  const size_t top = std::max<size_t>(1, perPixel.size() / 1000);
+  const size_t top = (perPixel.size() + 999) / 1000;
   std::nth_element(perPixel.begin(), perPixel.begin() + static_cast<std::ptrdiff_t>(top), perPixel.end(),
                    std::greater<>());
   if (total > 0)
@@ -179,6 +181,7 @@ BiasTest compareConverged(const Reference& a, const Reference& b) {
 SlopeVerdict judgeSlope(const Interval& s, const std::optional<Interval>& bySamples, bool biased, bool heavy,
                         bool independent) {
   const std::string found = fmt::format("{:.2f} [{:.2f}, {:.2f}]", s.value, s.low, s.high);
+  if (s.high - s.low > kUnsureSlope) return {"none", "none", found + ": too unsure to say anything"};
   if (s.contains(-1)) return {"none", "none", found + ": as Monte Carlo estimates without bias have it"};
   if (s.high < -1) {
     if (bySamples && bySamples->contains(-1))
