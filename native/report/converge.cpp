@@ -159,7 +159,8 @@ class Study {
                   {"budget_seconds", plan_.budgetSeconds},
                   {"reference", plan_.reference.empty() ? "" : hashOf(plan_.reference)},
                   {"reference_seconds", plan_.referenceSeconds},
-                  {"first_seed", plan_.firstSeed}};
+                  {"first_seed", plan_.firstSeed},
+                  {"threads", e.threads}};
     const fs::path path = plan_.folder / "study.json";
     if (fs::exists(path)) {
       const json found = readJson(path);
@@ -172,6 +173,12 @@ class Study {
       referenceSpp_ = found.at("reference_spp");
       return;
     }
+    for (const char* left : {"runs", "reference"})
+      if (fs::exists(plan_.folder / left))
+        throw Error(
+            ExitCode::kUsage,
+            fmt::format("{} holds '{}' of a study, but no study.json to say of which", plan_.folder.string(), left),
+            "choose another folder, or delete this one");
     choose();
     identity["chosen_spp"] = maxSpp_;
     identity["reference_spp"] = referenceSpp_;
@@ -327,6 +334,11 @@ class Study {
       const ExrImage exr = readExr(chunk);
       for (const auto& [name, value] : exr.attributes)
         if (name == "wardmis:seconds") r.seconds += std::atof(value.c_str());
+      if (exr.width != experiment_.width || exr.height != experiment_.height)
+        throw Error(ExitCode::kFile,
+                    fmt::format("{} has {} x {} pixels, the study {} x {}", chunk.string(), exr.width, exr.height,
+                                experiment_.width, experiment_.height),
+                    "the file is none of this study's; delete it");
       mean.add(rgbOf(exr, chunk));
     }
     r.image = mean.mean();
@@ -362,13 +374,14 @@ class Study {
       makeFolder(folder);
       const fs::path file = folder / fmt::format("seed-{:04}.json", seed);
       Run run;
-      if (fs::exists(file)) {
+      if (fs::exists(file) && fs::exists(fs::path(file).replace_extension(".exr"))) {
         const json found = readJson(file);
         try {
           run = runFromJson(found);
         } catch (const json::exception& x) {
           throw Error(ExitCode::kFile, fmt::format("{}: {}", file.string(), x.what()), "delete the file, and go on");
         }
+        checkRun(run, seed, file);
         run.image = fs::path(file).replace_extension(".exr");
       } else {
         const auto tellRun = [&](double part) {
@@ -385,6 +398,15 @@ class Study {
     }
     for (std::vector<Run>& r : e.runs)
       std::sort(r.begin(), r.end(), [](const Run& a, const Run& b) { return a.seed < b.seed; });
+  }
+
+  // That a file holds what this study's runs hold.
+  void checkRun(const Run& run, uint64_t seed, const fs::path& file) const {
+    std::vector<uint32_t> spp;
+    for (const Checkpoint& c : run.checkpoints) spp.push_back(c.spp);
+    if (spp != experiment_.checkpoints || run.seed != seed)
+      throw Error(ExitCode::kFile, fmt::format("{}: is not what a run of this study has measured", file.string()),
+                  "delete the file, and go on");
   }
 
   bool measureRun(Configuration& c, uint64_t seed, const fs::path& file, Run& run,

@@ -75,6 +75,10 @@ void addExternal(Experiment& e, const fs::path& manifest, const std::function<vo
     Checkpoint at;
     at.spp = entry.at("spp");
     at.time.wall = entry.at("wall");
+    if (at.spp < 1 || !(at.time.wall > 0))
+      throw Error(ExitCode::kFile,
+                  fmt::format("{}: a run of {} samples in {} s", manifest.string(), at.spp, at.time.wall),
+                  "give both as they were");
     at.cpuKnown = entry.contains("cpu") && !entry.at("cpu").is_null();
     if (at.cpuKnown) at.time.cpu = entry.at("cpu");
     at.cameraRays = uint64_t{at.spp} * truth.pixels();
@@ -84,11 +88,17 @@ void addExternal(Experiment& e, const fs::path& manifest, const std::function<vo
     last[seed] = std::move(image);
     run.checkpoints.push_back(at);
   }
-  size_t most = 0;
-  for (const auto& [seed, run] : runs) most = std::max(most, run.checkpoints.size());
+  const auto sppOf = [](const Run& run) {
+    std::vector<uint32_t> spp;
+    for (const Checkpoint& c : run.checkpoints) spp.push_back(c.spp);
+    return spp;
+  };
+  std::vector<uint32_t> all;
+  for (const auto& [seed, run] : runs)
+    if (run.checkpoints.size() > all.size()) all = sppOf(run);
   std::vector<Run> complete;
   for (auto& [seed, run] : runs) {
-    if (run.checkpoints.size() < most) continue;  // it was stopped there
+    if (sppOf(run) != all) continue;  // it was stopped there
     run.flip = flipError(last[seed], truth);
     complete.push_back(std::move(run));
   }

@@ -141,6 +141,19 @@ class Converge(CommandTest):
             2, *study, "--max-spp", "16", "-c", "equal", "-c", "second-moment", says=("another study", "max_spp")
         )
         self.refused(2, *study, "--max-spp", "8", "-c", "equal", says=("another study", "configurations"))
+        same = (*study, "--max-spp", "8", "-c", "equal", "-c", "second-moment")
+        self.refused(2, *same, "--threads", "1", says=("another study", "threads"))
+        # a run that was cut, and one without its image
+        path = self.folder / "study/runs/equal/seed-0001.json"
+        run = json.loads(path.read_text())
+        path.write_text(json.dumps({**run, "checkpoints": run["checkpoints"][:2]}))
+        self.refused(4, *same, says=("seed-0001.json", "not what a run of this study"))
+        path.write_text(json.dumps(run))
+        path.with_suffix(".exr").unlink()
+        self.run_command(*same)
+        self.assertTrue(path.with_suffix(".exr").is_file())
+        (self.folder / "study/study.json").unlink()
+        self.refused(2, *same, says=("no study.json",))
 
     def test_stopped_it_reports_and_goes_on(self):
         out = self.folder / "study"
