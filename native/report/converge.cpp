@@ -37,13 +37,21 @@ constexpr double kReferenceShare = 0.25;         // of a budget
 constexpr uint32_t kSurveySamples = 16;
 constexpr const char* kLayer = "ViewLayer";
 
+// An object.
 json readJson(const fs::path& path) {
   std::ifstream in(path);
   try {
-    return json::parse(in);
+    json j = json::parse(in);
+    if (!j.is_object()) throw Error(ExitCode::kFile, path.string() + ": is no JSON object", "delete it");
+    return j;
   } catch (const json::exception& e) {
     throw Error(ExitCode::kFile, fmt::format("{}: {}", path.string(), e.what()), "the file is damaged; delete it");
   }
+}
+
+// 0 where there is no such number.
+uint32_t countIn(const json& j, const char* key) {
+  return j.contains(key) && j[key].is_number_unsigned() ? j[key].get<uint32_t>() : 0;
 }
 
 void makeFolder(const fs::path& path) {
@@ -169,8 +177,10 @@ class Study {
           throw Error(ExitCode::kUsage,
                       fmt::format("{} holds another study, which differs in '{}'", plan_.folder.string(), key),
                       "choose another folder, or delete this one");
-      maxSpp_ = found.at("chosen_spp");
-      referenceSpp_ = found.at("reference_spp");
+      maxSpp_ = countIn(found, "chosen_spp"), referenceSpp_ = countIn(found, "reference_spp");
+      if (maxSpp_ < 2 || referenceSpp_ < 1)
+        throw Error(ExitCode::kFile, path.string() + ": does not say how many samples the runs have",
+                    "delete the folder, or choose another");
       return;
     }
     for (const char* left : {"runs", "reference"})
