@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 #include "film/exr.h"
 #include "math/error.h"
@@ -23,6 +22,7 @@ constexpr double kFloorFactor = 10;      // errors under so many times the refer
 constexpr double kDiscoveryRate = 0.05;  // of the map of who wins
 constexpr size_t kWinBlock = 4;          // pixels: side of the blocks of the map of who wins
 constexpr double kScatteredWall = 1.15;  // largest over median wall time of a configuration's runs
+constexpr double kTargetFactor = 1.1;    // the target over what the last errors may be
 constexpr size_t kGroupsShown = 12;      // of each kind, the largest
 constexpr size_t kSmallestGroup = 64;    // pixels
 
@@ -132,12 +132,6 @@ class Curves {
   double floor_;
 };
 
-std::vector<uint32_t> everySeed(size_t n) {
-  std::vector<uint32_t> all(n);
-  std::iota(all.begin(), all.end(), 0u);
-  return all;
-}
-
 // Two significant digits, upwards.
 double roundUp(double x) {
   const double unit = std::pow(10, std::floor(std::log10(x)) - 1);
@@ -190,8 +184,8 @@ class Reporter {
   }
 
  private:
-  // The metric and the clock that times and ratios refer to; an error that all reach with half of their samples, clear
-  // of the reference's noise; a time that all have.
+  // The metric and the clock that times and ratios refer to; an error that all surely reach, late on their curves, when
+  // the pilot is long over, and clear of the reference's noise; a time that all have.
   void choose() {
     // under a heavy tail a few pixels of a few seeds decide the mean: the rest is asked without them
     const bool heavy =
@@ -205,16 +199,14 @@ class Reporter {
     clock_ = scattered && cpuKnown ? &Clocks::cpu : &Clocks::wall;
     double target = 0, time = 1e300;
     for (const Measured& m : measured_) {
-      const Curve c = curvesOf(m).mean(everySeed(m.runs->size()));
       for (const Run& run : *m.runs) time = std::min(time, run.checkpoints.back().time.*clock_);  // within every curve
       if (m.seeds.biased() && &m != base_) continue;  // it may have a limit of its own
-      // and what its last error may be, as far as its seeds tell
       const Curves curves = curvesOf(m);
       const auto last = Bootstrap(curves.seeds()).interval([&](std::span<const uint32_t> draw) {
         return std::optional(curves.mean(draw, curves.checkpoints() - 1).error.back());
       });
-      target = std::max({target, c.error[c.error.size() - std::min<size_t>(2, c.error.size())],
-                         last ? 1.02 * last->high : 0, kFloorFactor * floorOf(*m.reference, *metric_)});
+      target =
+          std::max({target, last ? kTargetFactor * last->high : 0, kFloorFactor * floorOf(*m.reference, *metric_)});
     }
     target_ = e_.target.value_or(target > 0 ? roundUp(target) : 1e-3);
     time_ = time;

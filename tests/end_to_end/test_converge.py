@@ -256,6 +256,39 @@ class Converge(CommandTest):
         self.assertEqual(errors, sorted(errors, reverse=True))
         self.assertIn("only 3 seeds", " ".join(report["finding"]))
 
+    def test_a_black_image_has_nothing_to_compare(self):
+        scene = self.folder / "dark.glb"
+        text = json.dumps({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+                           "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1}}],
+                           "nodes": [{"camera": 0}]}).encode()  # fmt: skip
+        text += b" " * (-len(text) % 4)
+        scene.write_bytes(
+            b"glTF"
+            + (2).to_bytes(4, "little")
+            + (20 + len(text)).to_bytes(4, "little")
+            + len(text).to_bytes(4, "little")
+            + b"JSON"
+            + text
+        )
+        self.run_command(
+            "converge",
+            scene,
+            "-o",
+            self.folder / "study",
+            "--resolution",
+            "32x24",
+            "--max-spp",
+            "4",
+            "--seeds",
+            "3",
+            "-c",
+            "equal",
+            "-c",
+            "auto",
+        )
+        report = json.loads((self.folder / "study/report.json").read_text())
+        self.assertIn("no error to compare", report["finding"][0])
+
     def test_mistakes_are_named(self):
         out = ("-o", self.folder / "x", "--resolution", "48x32")
         self.refused(2, "converge", self.scene(), *out, "-c", "equall", says=("equall", "second-moment"))
