@@ -30,7 +30,7 @@ struct Options {
   uint32_t maxSpp = 64;
   double budget = 0, referenceTime = 0, target = 0;
   int threads = 0;
-  bool watchStdin = false;
+  bool watchStdin = false, check = false;
 };
 
 // As a shell takes it.
@@ -77,6 +77,10 @@ int run(const Options& o, const std::string& command) {
   if (!o.resolution.empty()) useResolution(scene, o.resolution);
   const double start = wallSeconds();
   const BuiltScene built(scene, o.threads);
+  if (o.check) {
+    check(built, plan);
+    return 0;
+  }
   for (const std::string& note : scene.notes) reporter.warn(note);
   json names = json::array();
   for (const Configuration& c : plan.configurations) names.push_back(c.name);
@@ -175,6 +179,7 @@ Verb addConverge(CLI::App& app) {
   app.add_option("--progress", o->progress, "bar, json or none")
       ->check(CLI::IsMember({"auto", "bar", "json", "none"}))
       ->capture_default_str();
+  app.add_flag("--check", o->check, "only look for mistakes in all of these, and end");
   app.add_flag("--watch-stdin", o->watchStdin, "stop when standard input is closed");
   return [o, &app] {
     std::string command = "wardmis converge " + shellQuoted(o->scene);

@@ -108,11 +108,17 @@ class Study {
     for (size_t i = 0; i < plan.seeds; ++i) e.seeds.push_back(plan.firstSeed + i);
   }
 
+  void check() {
+    checkNames();
+    if (!plan_.reference.empty()) given("");
+    identify(false);
+  }
+
   Experiment run() {
     checkNames();
     makeFolder(plan_.folder);
     const FolderLock lock(plan_.folder);
-    identify();
+    identify(true);
     Experiment& e = experiment_;
     for (uint32_t n = 1; n < maxSpp_; n *= 2) e.checkpoints.push_back(n);
     e.checkpoints.push_back(maxSpp_);
@@ -153,7 +159,7 @@ class Study {
   }
 
   // What the folder is a study of, and the number of samples, which a budget decides once.
-  void identify() {
+  void identify(bool write) {
     const Experiment& e = experiment_;
     json configurations = json::object();
     for (const Configuration& c : e.configurations) configurations[c.name] = c.described;
@@ -189,6 +195,7 @@ class Study {
             ExitCode::kUsage,
             fmt::format("{} holds '{}' of a study, but no study.json to say of which", plan_.folder.string(), left),
             "choose another folder, or delete this one");
+    if (!write) return;
     choose();
     identity["chosen_spp"] = maxSpp_;
     identity["reference_spp"] = referenceSpp_;
@@ -475,13 +482,15 @@ class Study {
 
   const BuiltScene& built_;
   const StudyPlan& plan_;
-  const StudyObserver& observer_;
+  const StudyObserver observer_;
   Experiment experiment_;
   uint32_t maxSpp_ = 0, referenceSpp_ = 0;
   double start_;
 };
 
 }  // namespace
+
+void check(const BuiltScene& built, const StudyPlan& plan) { Study(built, plan, {}).check(); }
 
 Experiment measure(const BuiltScene& built, const StudyPlan& plan, const StudyObserver& observer) {
   return Study(built, plan, observer).run();

@@ -38,6 +38,9 @@ struct StudyObserver {
   const std::atomic<Stop>* stop = nullptr;
 };
 
+// Throws for every mistake of the plan that shows without a render; writes nothing.
+void check(const BuiltScene& built, const StudyPlan& plan);
+
 // Continues what the folder holds of the same study; throws Error(kUsage) if it holds another one. After a stop it
 // returns what is there: Experiment::complete is false.
 Experiment measure(const BuiltScene& built, const StudyPlan& plan, const StudyObserver& observer);

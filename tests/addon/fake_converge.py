@@ -33,6 +33,7 @@ def parse():
     parser.add_argument("--max-spp", type=int, default=64)
     parser.add_argument("--external", action="append", default=[])
     parser.add_argument("--watch-stdin", action="store_true")
+    parser.add_argument("--check", action="store_true")
     options = (
         "baseline budget-seconds reference reference-time target title resolution threads progress allocation weights "
         "integrand integrator sampler samples-per-hit pilot-spp min-fraction max-depth cost"
@@ -43,6 +44,8 @@ def parse():
 
 
 def converge(options, film, mode):
+    if options.check:
+        return
     names = [c.split(":")[0] for c in options.configuration or ["equal", "variance", "second-moment", "auto"]]
     x0, y0, x1, y1 = film["border"]
     size = {"width": x1 - x0, "height": y1 - y0}

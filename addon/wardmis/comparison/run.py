@@ -83,6 +83,7 @@ def compare(
         except RendererError as error:
             raise RuntimeError(f"WardMIS: {error}") from error
         if cycles:
+            _check([*command, *arguments(study, scene.wardmis, outcome), "--check"])
             plan, study = divide(study, cycles_seeds, cycles_reference_spp, as_is)
             outcome.manifest = render_cycles(outcome.folder / CYCLES_FOLDER, read_scene_file(outcome.scene), plan, tell)
         command += arguments(study, scene.wardmis, outcome)
@@ -153,6 +154,17 @@ def threads_of(scene: Any) -> int:
 
 def _absolute(path: str | os.PathLike[str] | None) -> Path | None:
     return None if path is None else Path(bpy.path.abspath(os.fspath(path))).absolute()
+
+
+def _check(command: list[str]) -> None:
+    """A mistake in what is asked for shows before Cycles takes its time."""
+    try:
+        with Renderer(command) as renderer:
+            while renderer.running():
+                renderer.events(POLL_SECONDS)
+            renderer.finish()
+    except RendererError as error:
+        raise RuntimeError(f"WardMIS: {error}") from error
 
 
 def _converge(command: list[str], outcome: Outcome, tell: Progress) -> None:
