@@ -22,6 +22,7 @@ constexpr double kFloorFactor = 10;      // errors under so many times the refer
 constexpr double kDiscoveryRate = 0.05;  // of the map of who wins
 constexpr size_t kWinBlock = 4;          // pixels: side of the blocks of the map of who wins
 constexpr double kScatteredWall = 1.15;  // largest over median wall time of a configuration's runs
+constexpr size_t kFewestTested = 5;      // seeds, for a test of bias that can be believed to find any
 constexpr double kTargetFactor = 1.1;    // the target over what the last errors may be
 constexpr size_t kGroupsShown = 12;      // of each kind, the largest
 constexpr size_t kSmallestGroup = 64;    // pixels
@@ -313,6 +314,7 @@ class Reporter {
         "{} of {} blocks of {} × {} pixels differ from the reference (p < {:.2g}); the whole image: z = {:.2f}",
         b.failed, b.blocks, kBlock, kBlock, b.threshold, b.imageZ);
     if (heavy) text += "; the tail is heavy, so that the whole image alone counts";
+    if (m.runs->size() < kFewestTested) text += "; too few seeds for a test that would find much";
     if (!known) text += "; the reference's own noise is not known and counts as bias";
     return {{"tested", true},
             {"blocks", b.blocks},
@@ -321,7 +323,9 @@ class Reporter {
             {"smallest_p", b.smallestP},
             {"threshold", b.threshold},
             {"image_z", b.imageZ},
-            {"verdict", m.seeds.biased() ? "biased" : "none found"},
+            {"verdict", m.seeds.biased()                 ? "biased"
+                        : m.runs->size() < kFewestTested ? "not testable"
+                                                         : "none found"},
             {"text", text + "."}};
   }
 
@@ -684,10 +688,11 @@ class Reporter {
         for (size_t c = 0; c < 3; ++c)
           mean[c] += double(other.image.rgb[3 * i + c]), ours[c] += double(own.image.rgb[3 * i + c]);
       const double noise = own.relMseFloor + other.relMseFloor;
+      const double beyond = std::max(0.0, d.relMse - noise);
       json j{{"name", m.configuration->name},
              {"against", "WardMIS"},
              {"difference",
-              {{"relmse", std::max(0.0, d.relMse - noise)},
+              {{"relmse", beyond},
                {"relmse_trimmed", d.relMseTrimmed},
                {"noise", noise},
                {"mse", std::max(0.0, d.mse - own.mseFloor - other.mseFloor)},
@@ -695,7 +700,7 @@ class Reporter {
              {"common", m.configuration->common},
              {"agree", nullptr}};
       const std::string name = m.configuration->renderer;
-      if (m.configuration->common && own.known() && other.known()) {
+      if (m.configuration->common && own.known() && other.known() && m.runs->size() >= kFewestTested) {
         const BiasTest test = compareConverged(other, own);
         const bool agree = !test.biased() && !m.seeds.biased();
         j["agree"] = agree;
@@ -707,6 +712,15 @@ class Reporter {
                                 "{} and WardMIS should have the same integrand here, and do NOT agree: {} of {} blocks "
                                 "differ, image z {:.1f}.",
                                 name, test.failed, test.blocks, test.imageZ);
+      } else if (m.configuration->common) {
+        j["text"] = fmt::format(
+            "{} and WardMIS have the same integrand here and share one reference; whether they agree with it cannot be "
+            "tested with {} seeds{}.",
+            name, m.runs->size(), other.known() ? "" : " and one reference image");
+      } else if (beyond < noise) {
+        j["text"] = fmt::format(
+            "The converged images of {} and WardMIS differ by no more than their own noise (relMSE {:.3g}).", name,
+            noise);
       } else {
         j["text"] = fmt::format(
             "The converged images of {} and WardMIS differ by a relMSE of {:.3g} ({:.3g} without the largest 0.1 % of "
@@ -714,7 +728,7 @@ class Reporter {
             "pixels), beyond the {:.3g} of their own noise: a difference of the models of reflection, not an error; "
             "each is "
             "held against its own reference.",
-            name, std::max(0.0, d.relMse - noise), d.relMseTrimmed, noise);
+            name, beyond, d.relMseTrimmed, noise);
       }
       all.push_back(std::move(j));
     }

@@ -111,11 +111,13 @@ class Study {
   void check() {
     checkNames();
     if (!plan_.reference.empty()) given("");
+    for (const fs::path& manifest : plan_.external) readManifest(manifest);
     identify(false);
   }
 
   Experiment run() {
     checkNames();
+    for (const fs::path& manifest : plan_.external) readManifest(manifest);  // before the runs take their time
     makeFolder(plan_.folder);
     const FolderLock lock(plan_.folder);
     identify(true);

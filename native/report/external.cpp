@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fstream>
 #include <map>
+#include <set>
 
 #include "math/error.h"
 #include "report/flip.h"
@@ -27,12 +28,42 @@ RgbImage readSized(const fs::path& path, const Experiment& e) {
   return image;
 }
 
+[[noreturn]] void fail(const fs::path& manifest, const std::string& what) {
+  throw Error(ExitCode::kFile, fmt::format("{}: {}", manifest.string(), what),
+              "docs/report-format.md says what it must hold");
+}
+
 }  // namespace
 
-void addExternal(Experiment& e, const fs::path& manifest, const std::function<void(const std::string&)>& warn) try {
+json readManifest(const fs::path& manifest) try {
+  if (!fs::is_regular_file(manifest))
+    throw Error(ExitCode::kFile, manifest.string() + ": is no file", "check the path after --external");
   std::ifstream in(manifest);
   if (!in) throw Error(ExitCode::kFile, manifest.string() + ": cannot be read", "check the path after --external");
-  const json j = json::parse(in);
+  json j = json::parse(in);
+  if (j.at("name").get<std::string>().empty()) fail(manifest, "\"name\" is empty");
+  if (j.at("reference").at("images").empty()) fail(manifest, "\"reference\" has no images");
+  std::set<std::pair<uint64_t, uint64_t>> seen;
+  for (const json& run : j.at("runs")) {
+    if (!run.at("path").is_string()) fail(manifest, fmt::format("\"path\" is {}, not a text", run["path"].dump()));
+    for (const char* key : {"seed", "spp"})
+      if (!run.at(key).is_number_unsigned())
+        fail(manifest, fmt::format("\"{}\" is {}, not a whole number", key, run.at(key).dump()));
+    if (run["spp"] < 1 || run["spp"] > (1u << 24))
+      fail(manifest, fmt::format("a run of {} samples", run["spp"].dump()));
+    if (!(run.at("wall").get<double>() > 0)) fail(manifest, fmt::format("a run took {} s", run["wall"].dump()));
+    if (run.contains("cpu") && !run["cpu"].is_null() && !(run["cpu"].get<double>() > 0))
+      fail(manifest, fmt::format("a run took {} s of CPU time", run["cpu"].dump()));
+    if (!seen.emplace(run["seed"], run["spp"]).second)
+      fail(manifest, fmt::format("seed {} has {} samples twice", run["seed"].dump(), run["spp"].dump()));
+  }
+  return j;
+} catch (const json::exception& x) {
+  fail(manifest, x.what());
+}
+
+void addExternal(Experiment& e, const fs::path& manifest, const std::function<void(const std::string&)>& warn) try {
+  const json j = readManifest(manifest);
   const fs::path folder = manifest.parent_path();
   Configuration c;
   c.name = j.at("name");
@@ -48,7 +79,6 @@ void addExternal(Experiment& e, const fs::path& manifest, const std::function<vo
 
   std::vector<fs::path> images;
   for (const json& path : j.at("reference").at("images")) images.push_back(folder / path.get<std::string>());
-  if (images.empty()) throw Error(ExitCode::kFile, manifest.string() + ": \"reference\" has no images", "add two");
   if (images.size() < 2 && warn)
     warn(fmt::format("{}: one reference image: its own noise is unknown and is not subtracted", manifest.string()));
   ImageMean mean;
@@ -64,6 +94,9 @@ void addExternal(Experiment& e, const fs::path& manifest, const std::function<vo
 
   std::map<uint64_t, Run> runs;
   std::map<uint64_t, RgbImage> last;
+  // known of all, or of none
+  const bool cpuKnown = std::all_of(j.at("runs").begin(), j.at("runs").end(),
+                                    [](const json& run) { return run.contains("cpu") && !run["cpu"].is_null(); });
   std::vector<json> entries = j.at("runs").get<std::vector<json>>();
   std::stable_sort(entries.begin(), entries.end(), [](const json& a, const json& b) {
     return a.at("spp").get<uint32_t>() < b.at("spp").get<uint32_t>();
@@ -75,11 +108,7 @@ void addExternal(Experiment& e, const fs::path& manifest, const std::function<vo
     Checkpoint at;
     at.spp = entry.at("spp");
     at.time.wall = entry.at("wall");
-    if (at.spp < 1 || !(at.time.wall > 0))
-      throw Error(ExitCode::kFile,
-                  fmt::format("{}: a run of {} samples in {} s", manifest.string(), at.spp, at.time.wall),
-                  "give both as they were");
-    at.cpuKnown = entry.contains("cpu") && !entry.at("cpu").is_null();
+    at.cpuKnown = cpuKnown;
     if (at.cpuKnown) at.time.cpu = entry.at("cpu");
     at.cameraRays = uint64_t{at.spp} * truth.pixels();
     run.image = folder / entry.at("path").get<std::string>();
@@ -90,7 +119,7 @@ void addExternal(Experiment& e, const fs::path& manifest, const std::function<vo
   }
   const auto sppOf = [](const Run& run) {
     std::vector<uint32_t> spp;
-    for (const Checkpoint& c : run.checkpoints) spp.push_back(c.spp);
+    for (const Checkpoint& at : run.checkpoints) spp.push_back(at.spp);
     return spp;
   };
   std::vector<uint32_t> all;

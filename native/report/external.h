@@ -8,6 +8,9 @@
 
 namespace wardmis {
 
+// Whether it is a manifest: all but its images. Throws Error(kFile).
+nlohmann::json readManifest(const std::filesystem::path& manifest);
+
 // Adds the manifest's renderer as a configuration, with its reference and its runs. Throws Error(kFile).
 void addExternal(Experiment& experiment, const std::filesystem::path& manifest,
                  const std::function<void(const std::string&)>& warn);

@@ -360,8 +360,27 @@ class Converge(CommandTest):
         self.assertEqual(other["bias"]["verdict"], "none found")
         self.assertIs(report["models"][0]["agree"], True, report["models"])
 
+    def test_mistakes_of_a_manifest_are_named(self):
+        path = self.manifest(seeds=2)
+        right = json.loads(path.read_text())
+        for change, says in (
+            ({"spp": -1}, "spp"), ({"spp": 1.7}, "spp"), ({"spp": 0}, "0 samples"), ({"wall": 0}, "0 s"), ({"cpu": -1}, "CPU"),
+            ({"seed": "a"}, "seed"), ({"path": 3}, "path"),
+        ):  # fmt: skip
+            wrong = {**right, "runs": [{**right["runs"][0], **change}, *right["runs"][1:]]}
+            path.write_text(json.dumps(wrong))
+            self.refused(
+                4, "converge", self.scene(), "-o", self.folder / "x", "--check", "--external", path, says=(says,)
+            )
+        path.write_text(json.dumps({**right, "runs": right["runs"] + right["runs"][:1]}))
+        self.refused(
+            4, "converge", self.scene(), "-o", self.folder / "x", "--check", "--external", path, says=("twice",)
+        )
+        self.refused(4, "converge", self.scene(), "-o", self.folder / "x", "--external", self.folder, says=("no file",))
+        self.assertFalse((self.folder / "x").exists())
+
     def test_a_biased_renderer_is_caught_and_named(self):
-        _, report = self.quick("--external", self.manifest(scale=1.1))
+        _, report = self.quick("--external", self.manifest(scale=1.1), seeds=6)
         self.assertEqual(self.of(report, "Other")["bias"]["verdict"], "biased")
         self.assertEqual(self.of(report, "equal")["bias"]["verdict"], "none found")
         self.assertIs(report["models"][0]["agree"], False)
