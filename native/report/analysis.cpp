@@ -243,7 +243,8 @@ class Reporter {
             {"seconds", r.seconds > 0 ? json(r.seconds) : json()},
             {"chunks", r.chunks > 0 ? json(r.chunks) : json()},
             {"floor",
-             {{"mse", r.known() ? json(r.mseFloor) : json()}, {"relmse", r.known() ? json(r.relMseFloor) : json()}}}};
+             {{"mse", r.mseFloor > 0 ? json(r.mseFloor) : json()},
+              {"relmse", r.relMseFloor > 0 ? json(r.relMseFloor) : json()}}}};
   }
 
   json curve(const Measured& m) const {
@@ -702,16 +703,19 @@ class Reporter {
       const std::string name = m.configuration->renderer;
       if (m.configuration->common && own.known() && other.known() && m.runs->size() >= kFewestTested) {
         const BiasTest test = compareConverged(other, own);
-        const bool agree = !test.biased() && !m.seeds.biased();
+        const bool agree = !test.biased() && !m.seeds.biased() && !m.seeds.bias.biased();
         j["agree"] = agree;
-        j["text"] = agree ? fmt::format(
-                                "{} and WardMIS have the same integrand here, share one reference, and agree with it "
-                                "(no block of {} × {} pixels differs, image z {:.1f}).",
-                                name, kBlock, kBlock, test.imageZ)
-                          : fmt::format(
-                                "{} and WardMIS should have the same integrand here, and do NOT agree: {} of {} blocks "
-                                "differ, image z {:.1f}.",
-                                name, test.failed, test.blocks, test.imageZ);
+        const std::string tests = fmt::format(
+            "of {} blocks of {} × {} pixels {} differ between the converged images (image z {:.1f}), and {} between "
+            "its runs "
+            "and the reference (image z {:.1f})",
+            test.blocks, kBlock, kBlock, test.failed, test.imageZ, m.seeds.bias.failed, m.seeds.bias.imageZ);
+        j["text"] =
+            agree
+                ? fmt::format(
+                      "{} and WardMIS have the same integrand here, share one reference, and agree with it: {}.", name,
+                      tests)
+                : fmt::format("{} and WardMIS should have the same integrand here, and do NOT agree: {}.", name, tests);
       } else if (m.configuration->common) {
         j["text"] = fmt::format(
             "{} and WardMIS have the same integrand here and share one reference; whether they agree with it cannot be "

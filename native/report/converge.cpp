@@ -289,6 +289,35 @@ class Study {
     }
   }
 
+  // A render of ours says how it was made, and how sure it is.
+  void useWhatItSays(Reference& r) const {
+    const ExrImage exr = readExr(r.path);
+    json settings = json::object();
+    for (const auto& [name, text] : exr.attributes)
+      if (name == "wardmis:settings") settings = json::parse(text, nullptr, false);
+    const std::vector<uint64_t>& seeds = experiment_.seeds;
+    if (settings.is_object() && settings.contains("seed") && settings["seed"].is_number_unsigned() &&
+        std::find(seeds.begin(), seeds.end(), settings["seed"].get<uint64_t>()) != seeds.end())
+      throw Error(ExitCode::kUsage,
+                  fmt::format("{} has the seed {}, as one of the runs: its noise would be theirs", r.path.string(),
+                              settings["seed"].dump()),
+                  "begin with another --seed");
+    std::vector<float> variance(r.image.rgb.size());
+    for (size_t c = 0; c < 3; ++c) {
+      const std::vector<float>* v = exr.channel(fmt::format("{}.Variance.{}", kLayer, "RGB"[c]));
+      if (v == nullptr) return;
+      for (size_t i = 0; i < v->size(); ++i) variance[3 * i + c] = (*v)[i];
+    }
+    r.setVariance(std::move(variance));
+    if (!settings.is_object() || settings.value("sampler", "independent") == "independent") return;
+    r.mseFloor = r.relMseFloor = 0;  // an upper bound is not what may be subtracted; for the test of bias it is careful
+    if (observer_.warn)
+      observer_.warn(
+          fmt::format("{} was rendered with evenly spread points, for which its Variance pass is an upper bound: "
+                      "its own noise is not subtracted",
+                      r.path.string()));
+  }
+
   Reference given(const std::string& key) const {
     Reference r;
     r.estimates = key;
@@ -299,19 +328,7 @@ class Study {
                   fmt::format("{} has {} x {} pixels, the render {} x {}", plan_.reference.string(), r.image.width,
                               r.image.height, experiment_.width, experiment_.height),
                   "render the reference at the same resolution and border");
-    if (plan_.reference.extension() == ".exr") {
-      const ExrImage exr = readExr(plan_.reference);
-      const std::vector<float>* v[3];
-      bool has = true;
-      for (size_t c = 0; c < 3; ++c)
-        has = has && (v[c] = exr.channel(fmt::format("{}.Variance.{}", kLayer, "RGB"[c]))) != nullptr;
-      if (has) {
-        std::vector<float> variance(r.image.rgb.size());
-        for (size_t i = 0; i < r.image.pixels(); ++i)
-          for (size_t c = 0; c < 3; ++c) variance[3 * i + c] = (*v[c])[i];
-        r.setVariance(std::move(variance));
-      }
-    }
+    if (plan_.reference.extension() == ".exr") useWhatItSays(r);
     if (!r.known() && observer_.warn)
       observer_.warn(fmt::format("{} has no Variance pass: its own noise is unknown and is not subtracted",
                                  plan_.reference.string()));

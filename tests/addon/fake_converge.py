@@ -45,7 +45,7 @@ def parse():
 
 def converge(options, film, mode):
     if options.check:
-        return
+        return None
     names = [c.split(":")[0] for c in options.configuration or ["equal", "variance", "second-moment", "auto"]]
     x0, y0, x1, y1 = film["border"]
     size = {"width": x1 - x0, "height": y1 - y0}

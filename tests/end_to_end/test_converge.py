@@ -237,12 +237,28 @@ class Converge(CommandTest):
 
     def test_a_given_reference_is_held_against(self):
         self.render(
-            "--spp", "256", "--allocation", "equal", "--sampler", "independent", out=self.folder / "reference.exr"
+            "--spp",
+            "256",
+            "--seed",
+            "99",
+            "--allocation",
+            "equal",
+            "--sampler",
+            "independent",
+            out=self.folder / "reference.exr",
         )
         _, report = self.quick("--reference", self.folder / "reference.exr")
         self.assertEqual(report["reference"]["source"], "given")
         self.assertGreater(report["reference"]["floor"]["relmse"], 0)
         self.refused(2, "converge", self.scene(), "-o", self.folder / "b", "--reference", self.folder / "reference.exr", "--resolution", "24x16", says=("48 x 32",))  # fmt: skip
+
+        # of evenly spread points the Variance pass is an upper bound
+        self.render("--spp", "256", "--seed", "99", "--allocation", "equal", out=self.folder / "sobol.exr")
+        done, report = self.quick("--reference", self.folder / "sobol.exr", folder="c")
+        self.assertIsNone(report["reference"]["floor"]["relmse"])
+        self.assertIn("upper bound", done.stderr)
+        self.render("--spp", "256", "--seed", "3", "--allocation", "equal", out=self.folder / "own.exr")
+        self.refused(2, "converge", self.scene(), "-o", self.folder / "d", "--reference", self.folder / "own.exr", "--resolution", "48x32", says=("seed 3",))  # fmt: skip
 
     def test_each_sampler_and_integrator_has_its_place(self):
         _, report = self.study(
@@ -405,12 +421,69 @@ class Converge(CommandTest):
         "--min-fraction", 0.001, "-c", "equal", "-c", "variance", "-c", "second-moment",
     )  # fmt: skip
 
-    def test_two_identical_configurations_are_a_tie(self):
-        _, report = self.study("--max-spp", 16, "--seeds", 8, "-c", "equal", "-c", "again:allocation=equal")
-        again = self.of(report, "again")
-        self.assertEqual(again["equal_samples"]["ratio"], {"mean": 1, "low": 1, "high": 1})
-        self.assertEqual(again["wins"]["better"] + again["wins"]["worse"], 0)
-        self.assertIn(again["time_to_target"]["verdict"], ("tie", "faster", "slower"))
+    def test_known_times_in_known_ratios_out(self):
+        """Three configurations with the same images, whose runs are given times that are known: as the baseline, 0.62 of it, and as it."""
+        options = (
+            "--max-spp",
+            16,
+            "--seeds",
+            12,
+            "-c",
+            "equal",
+            "-c",
+            "sooner:allocation=equal",
+            "-c",
+            "again:allocation=equal",
+        )
+        self.study(*options)
+        factor = {"equal": 1, "sooner": 0.62, "again": 1}
+        runs = {}
+        for name in factor:
+            for path in sorted((self.folder / "study/runs" / name).glob("*.json")):
+                run = json.loads(path.read_text())
+                for at in run["checkpoints"]:
+                    at["wall"] = (0.02 + 0.01 * at["spp"]) * factor[name]
+                    at["cpu"] = 2 * at["wall"]
+                path.write_text(json.dumps(run))
+                runs.setdefault(name, []).append(run)
+        _, report = self.study(*options)
+        self.assertEqual(report["clock"], "wall")
+        key, floor = report["metric"], (report["reference"]["floor"]["relmse"] if report["metric"] == "relmse" else 0)
+        error = np.mean([[at[key] for at in run["checkpoints"]] for run in runs["equal"]], axis=0) - floor
+        wall = 0.02 + 0.01 * np.array([1, 2, 4, 8, 16])
+        target = self.of(report, "equal")["time_to_target"]["target"]
+
+        def along(x, xs, ys):
+            return np.exp(np.interp(np.log(x), np.log(xs), np.log(ys)))
+
+        self.assertAlmostEqual(
+            self.of(report, "equal")["time_to_target"]["seconds"]["mean"],
+            along(target, error[::-1], wall[::-1]),
+            places=9,
+        )
+        at = self.of(report, "equal")["equal_time"]
+        self.assertAlmostEqual(at["seconds"], 0.62 * wall[-1], places=12)
+        self.assertAlmostEqual(at["error"]["mean"], along(at["seconds"], wall, error), places=9)
+        for name, ratio in factor.items():
+            if name == "equal":
+                continue
+            c = self.of(report, name)
+            for found in (c["time_to_target"]["ratio"], c["efficiency"]["ratio"]):
+                for end in ("mean", "low", "high"):
+                    self.assertAlmostEqual(found[end], ratio, places=9)
+            self.assertAlmostEqual(
+                c["equal_time"]["error"]["mean"], along(at["seconds"] / ratio, wall, error), places=9
+            )
+            self.assertEqual(c["equal_samples"]["ratio"], {"mean": 1, "low": 1, "high": 1})
+        self.assertEqual(self.of(report, "sooner")["time_to_target"]["verdict"], "faster")
+        self.assertEqual(self.of(report, "again")["time_to_target"]["verdict"], "tie")
+        wins = self.of(report, "sooner")["wins"]
+        self.assertGreater(wins["better"], 0.5)
+        self.assertEqual(wins["worse"], 0)
+        self.assertEqual(self.of(report, "again")["wins"]["undecided"], 1)
+        said = " ".join(report["finding"])
+        self.assertIn("sooner 0.62 [0.62, 0.62]", said)
+        self.assertIn("No difference from equal is found for again 1.00 [1.00, 1.00]", said)
 
     def test_veach(self):
         """Where a hit has one integral and two techniques, `variance` ties with `equal` (docs/theory.md); where a plate has two

@@ -134,17 +134,6 @@ TEST(Resample, ErrorAtATime) {
   EXPECT_FALSE(errorAt(c, 4.1).has_value());
 }
 
-TEST(Resample, IdenticalConfigurationsAreATie) {
-  std::mt19937_64 random(3);
-  const std::vector<double> common = commonFactors(random, 8);
-  const std::vector<Curve> a = simulate({1, 1, 0, 8}, random, common);
-  const auto ratio = Bootstrap(kSeeds).interval([&](std::span<const uint32_t> draw) {
-    return std::optional(*timeTo(meanOf(a, draw), 0.05) / *timeTo(meanOf(a, draw), 0.05));
-  });
-  EXPECT_DOUBLE_EQ(ratio->low, 1);
-  EXPECT_DOUBLE_EQ(ratio->high, 1);
-}
-
 TEST(Resample, PValues) {
   EXPECT_NEAR(pOfNormal(1.959964), 0.05, 1e-6);
   EXPECT_NEAR(pOfStudent(2.131450, 15), 0.05, 1e-6);
