@@ -82,8 +82,8 @@ class CandidateHit {
   float value_[kCandidates]{}, mean_[kTechniques - 1][kCandidates]{}, integral_ = 0;
 };
 
-// The candidate of the least predicted variance x cost, of those whose gain over equal counts is above twice its
-// standard error; equal counts where there is none.
+// The candidate whose gain in predicted variance x cost over equal counts, less the gain's standard error, is the
+// largest; equal counts where none is above nothing, or where hits are too few to tell.
 Fractions chooseCandidate(const CandidateSums& sums, TechniqueMask available, const Fractions& cost);
 
 }  // namespace wardmis
