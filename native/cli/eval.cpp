@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 
+#include "cli/options.h"
 #include "cli/verbs.h"
 #include "math/error.h"
 
@@ -30,7 +31,7 @@ Verb addEval(CLI::App& app) {
   StudyInput& s = o->settings.surface;
   app.add_option("FILE", o->file, "what to read instead of standard input");
   app.add_option("--brdf", o->brdf, "the model")->check(CLI::IsMember(kBrdfs))->capture_default_str();
-  const CLI::Range alphas(1e-7, 100.0);
+  const CLI::Validator alphas = between(1e-7, 100.0);
   auto* x = app.add_option("--alpha-x", s.alphaX, "Ward's roughness, x")->check(alphas)->capture_default_str();
   auto* y = app.add_option("--alpha-y", s.alphaY, "Ward's roughness, y")->check(alphas)->capture_default_str();
   auto* alpha =
@@ -40,9 +41,9 @@ Verb addEval(CLI::App& app) {
           ->excludes(x, y);
   x->needs(y), y->needs(x);
   auto* m =
-      app.add_option("--m", s.m, "Lafortune and Phong's exponent")->check(CLI::Range(0.0, 1e7))->capture_default_str();
-  app.add_option("--rho-s", s.rhoS, "specular albedo factor")->check(CLI::Range(0.0, 1e6))->capture_default_str();
-  app.add_option("--rho-d", s.rhoD, "diffuse albedo")->check(CLI::Range(0.0, 1e6))->capture_default_str();
+      app.add_option("--m", s.m, "Lafortune and Phong's exponent")->check(between(0.0, 1e7))->capture_default_str();
+  app.add_option("--rho-s", s.rhoS, "specular albedo factor")->check(between(0.0, 1e6))->capture_default_str();
+  app.add_option("--rho-d", s.rhoD, "diffuse albedo")->check(between(0.0, 1e6))->capture_default_str();
   app.add_option("--precision", o->precision, "what the numbers are computed in")
       ->check(CLI::IsMember(kPrecisions))
       ->capture_default_str();

@@ -6,6 +6,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "cli/options.h"
+#include "cli/paths.h"
 #include "cli/verbs.h"
 #include "math/error.h"
 #include "study/gnuplot.h"
@@ -22,7 +24,7 @@ struct Options {
 };
 
 int run(Options& o) {
-  if (!o.plot.empty()) checkPlotName(o.plot);
+  if (!o.plot.empty()) checkPlotName(o.plot), checkWritable(o.plot);
   o.settings.variants.clear();
   for (StudyBrdf b : {StudyBrdf::kWard, StudyBrdf::kWardDur, StudyBrdf::kWardGmd})
     if (std::find(o.variants.begin(), o.variants.end(), name(b)) != o.variants.end()) o.settings.variants.push_back(b);
@@ -45,12 +47,15 @@ Verb addStability(CLI::App& app) {
       ->check(CLI::IsMember({"ward", "ward-dur", "ward-gmd"}))
       ->default_str("ward,ward-dur,ward-gmd");
   app.add_flag("--thorough", o->settings.thorough, "ten times the work: a finer grid, more trials");
-  app.add_option("--seed", o->settings.seed, "another seed, other samples")->capture_default_str();
+  app.add_option("--seed", o->settings.seed, "another seed, other samples")
+      ->check(wholeNumber())
+      ->capture_default_str();
   app.add_option("--threads", o->settings.threads, "0: all; the numbers do not depend on it")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   app.add_flag("--json", o->json, "everything that was measured, as one object");
-  app.add_option("--plot", o->plot, "draw heat maps over alpha and theta_o, as .svg or .png (needs gnuplot)");
+  app.add_option("--plot", o->plot, "draw heat maps over alpha and theta_o, as .svg or .png (needs gnuplot)")
+      ->check(named());
   return [o] { return run(*o); };
 }
 

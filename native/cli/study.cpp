@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/options.h"
+#include "cli/paths.h"
 #include "cli/verbs.h"
 #include "film/write_file.h"
 #include "math/error.h"
@@ -25,7 +26,29 @@ struct Options {
   int trials = 1000, threads = 0;
   uint64_t seed = 0;
   bool json = false, paper = false;
+  const CLI::App* app = nullptr;  // that tells what was given
+
+  bool given(const char* option) const { return app->count(option) > 0; }
 };
+
+// What was given and would change nothing is a mistake, of which the reader of the result would not know.
+void refuseIdleOptions(const Options& o) {
+  const auto refuse = [&](const char* option, const std::string& why, const char* hint) {
+    if (o.given(option)) throw Error(ExitCode::kUsage, fmt::format("{} {}", option, why), hint);
+  };
+  if (o.paper) {
+    for (const CLI::Option* each : o.app->get_options())
+      if (each->count() > 0 && each->get_name() != "--paper" && each->get_name() != "--plot")
+        throw Error(ExitCode::kUsage, each->get_name() + " changes nothing of --paper", "leave it out");
+    return;
+  }
+  const char* roughness[] = {"--alpha", "--alpha-x", "--alpha-y", "--phi-o"};
+  if (o.brdf == "lafortune-phong")
+    for (const char* option : roughness) refuse(option, "is no parameter of lafortune-phong", "its exponent is --m");
+  else
+    refuse("--m", "is no parameter of " + o.brdf, "its roughness is --alpha");
+  if (o.mode == "planar") refuse("--phi-o", "means nothing in the planar reduction", "leave it out, or --mode full");
+}
 
 // "N", or "N..M": from N by doubling to M.
 std::vector<int> sampleCounts(const std::string& text) {
@@ -86,7 +109,6 @@ std::vector<const Strategy*> chosen(const std::vector<std::string>& names, size_
 
 // The paper's printed formulas and its ranking, held against quadrature.
 int runPaper(const Options& o) {
-  if (!o.plot.empty()) checkPlotName(o.plot);
   const std::vector<Erratum> wrong = errata();
   const std::vector<Verdict> ranking = verdicts();
   if (!o.plot.empty()) plotVerdicts(ranking, o.plot);
@@ -96,12 +118,18 @@ int runPaper(const Options& o) {
 }
 
 int run(Options& o) {
+  refuseIdleOptions(o);
+  checkDistinct({{"--csv", o.csv}, {"--plot", o.plot}});
+  if (!o.plot.empty()) checkPlotName(o.plot);
+  for (const std::string* path : {&o.csv, &o.plot})
+    if (!path->empty()) checkWritable(*path);
   if (o.paper) return runPaper(o);
   const auto start = std::chrono::steady_clock::now();
   StudyInput& in = o.input;
   for (StudyBrdf b : {StudyBrdf::kLafortunePhong, StudyBrdf::kWard, StudyBrdf::kWardDur, StudyBrdf::kWardGmd})
     if (o.brdf == name(b)) in.brdf = b;
   in.mode = o.mode == "planar" ? StudyMode::kPlanar : StudyMode::kFull;
+  if (in.mode == StudyMode::kPlanar && !in.ward() && !o.given("--theta-o")) in.thetaO = 0;  // the only one it has
   in.joint = o.integrand == "joint";
   in.techniques.clear();
   for (const std::string& t : o.techniques)
@@ -109,7 +137,6 @@ int run(Options& o) {
       if (t == name(k)) in.techniques.push_back(k);
   const std::vector<const Strategy*> list = chosen(o.names, in.techniques.size());
   const std::vector<int> counts = sampleCounts(o.samples);
-  if (!o.plot.empty()) checkPlotName(o.plot);
   if (!o.plot.empty() && o.trials < 2)
     throw Error(ExitCode::kUsage, "--plot shows measured variances", "give --trials of at least 2");
 
@@ -137,6 +164,7 @@ int run(Options& o) {
 
 Verb addStudy(CLI::App& app) {
   auto o = std::make_shared<Options>();
+  o->app = &app;
   app.footer(
       "The paper's sections 3 and 4: L_o = integral of f_r L_i cos under the sky L_i = R cos(theta), exactly and by "
       "trials.");
@@ -145,11 +173,13 @@ Verb addStudy(CLI::App& app) {
       ->capture_default_str();
   auto* alpha = app.add_option_function<double>(
       "--alpha", [o](double a) { o->input.alphaX = o->input.alphaY = a; }, "Ward's roughness (default 0.1)");
-  app.add_option("--alpha-x", o->input.alphaX, "anisotropic: along x")->excludes(alpha);
-  app.add_option("--alpha-y", o->input.alphaY, "anisotropic: along y")->excludes(alpha);
+  auto* x = app.add_option("--alpha-x", o->input.alphaX, "anisotropic: along x")->excludes(alpha);
+  auto* y = app.add_option("--alpha-y", o->input.alphaY, "anisotropic: along y")->excludes(alpha);
+  x->needs(y), y->needs(x);
   app.add_option("--phi-o", o->input.phiO, "azimuth of the outgoing direction, degrees")->capture_default_str();
   app.add_option("--m", o->input.m, "exponent of Lafortune and Phong's lobe")->capture_default_str();
-  app.add_option("--theta-o", o->input.thetaO, "angle of the outgoing direction, degrees")->capture_default_str();
+  app.add_option("--theta-o", o->input.thetaO, "angle of the outgoing direction, degrees (planar lafortune-phong: 0)")
+      ->capture_default_str();
   app.add_option("--rho-d", o->input.rhoD, "diffuse albedo")->capture_default_str();
   app.add_option("--rho-s", o->input.rhoS, "specular factor")->capture_default_str();
   app.add_option("--R", o->input.R, "scale of the sky")->capture_default_str();
@@ -176,9 +206,10 @@ Verb addStudy(CLI::App& app) {
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   app.add_flag("--json", o->json, "one object with the keys input, expect (as in tests/golden) and measured");
-  app.add_option("--csv", o->csv, "write a line for each strategy and number of samples");
+  app.add_option("--csv", o->csv, "write a line for each strategy and number of samples")->check(named());
   app.add_option("--plot", o->plot,
-                 "draw variance against samples and error against time, as .svg or .png (needs gnuplot)");
+                 "draw variance against samples and error against time, as .svg or .png (needs gnuplot)")
+      ->check(named());
   app.add_flag(
       "--paper", o->paper,
       "instead: how far the paper's printed formulas are off, and when its ranking of the allocations is true; with "

@@ -12,7 +12,21 @@
 
 namespace wardmis {
 
-void writeFile(const std::filesystem::path& path, std::string_view bytes) {
+namespace {
+
+// Where a chain of symbolic links ends, also where nothing is there yet.
+std::filesystem::path target(std::filesystem::path path) {
+  constexpr int kMostLinks = 40;  // as Linux has it
+  std::error_code none;
+  for (int k = 0; k < kMostLinks && std::filesystem::is_symlink(path, none); ++k)
+    path = path.parent_path() / std::filesystem::read_symlink(path, none);  // one that is absolute replaces all
+  return path;
+}
+
+}  // namespace
+
+void writeFile(const std::filesystem::path& name, std::string_view bytes) {
+  const std::filesystem::path path = target(name);  // the rename would replace the link
   std::filesystem::path temporary = path;
   temporary += fmt::format(".tmp{}", getpid());
   const auto fail = [&](const char* doing) {

@@ -7,7 +7,8 @@
 
 namespace wardmis {
 
-// Writes under a temporary name beside `path`, then renames. Throws Error(kFile); then no file of either name is left.
-void writeFile(const std::filesystem::path& path, std::string_view bytes);
+// Writes under a temporary name beside `name` (or beside what it links to), then renames. Throws Error(kFile); then no
+// file of either name is left.
+void writeFile(const std::filesystem::path& name, std::string_view bytes);
 
 }  // namespace wardmis

@@ -171,6 +171,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       sum += f * mixture.scale(t, p, kDiffuseTechniques);
       if (moments != nullptr) note(moments->diffuse, f, p, kDiffuseTechniques);
     }
+    if (candidates) candidates->addBoth(luminance(fs * radiance), luminance(fd * radiance), p, mixture.n);
   };
 
   for (int k = 0; k < j; ++k) {

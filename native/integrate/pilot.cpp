@@ -34,12 +34,7 @@ std::vector<Fractions> Pilot::fractions(Allocation rule, Integrand integrand, Te
       const TechniqueMask mask =
           available & pixels[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)].techniques;
       if (rule == Allocation::kAuto) {
-        // sum over hits of (integral f)^2, taken as the same for all of them
-        float squares = 0;
-        for (const Moments* each : {&m.specular, &m.diffuse})
-          if (const float mean = each->mean[0] + each->mean[1] + each->mean[2]; each->hits > 0)
-            squares += mean * (mean / each->hits);
-        a = chooseCandidate(sums, squares, mask, cost);
+        a = chooseCandidate(sums, mask, cost);
         continue;
       }
       a = integrand == Integrand::kJoint ? allocate(rule, m.specular, mask, minimum)

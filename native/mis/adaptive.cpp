@@ -51,37 +51,50 @@ std::vector<Densities> candidates(int n, double step, int power) {
 Densities autoFractions(const Points& pilot, const Densities* cost, double sigmas) {
   const int n = pilot.techniques;
   const std::vector<Densities> all = candidates(n, 2, 4);  // down to 1/17 of two techniques
-  const auto costOf = [&](const Densities& a) {
-    double c = 0;
-    for (int i = 0; i < n; ++i) c += a[at(i)] * (cost != nullptr ? (*cost)[at(i)] : 1);
-    return c;
-  };
-  const double mu = pilot.integrate([](const Point& x) { return x.f; });
-  const Densities& equal = all.front();
-  // of each candidate: the estimate of (integral f^2/q - mu^2) x cost, and the standard error of its gain over equal
-  // counts, from the spread of the points' contributions
-  double bestValue = 0;
-  const Densities* best = nullptr;
-  const auto outside = [&](const Densities& a) {
-    double sum = 0;
-    for (int i = 0; i < n; ++i) sum += a[at(i)] * pilot.outside[at(i)];
-    return sum * mu * mu * costOf(a);
-  };
-  for (const Densities& a : all) {
-    double value = outside(a), gain = outside(equal) - value, gain2 = 0;
+  // Of each candidate N Var x cost = sum_i a_i Var_{p_i}[f/q] x cost, and what each point (and, at the end, what lies
+  // outside the domain) contributes to it, from whose spread the standard error of the gain over equal counts follows.
+  const size_t parts = pilot.list.size();
+  const auto contributions = [&](const Densities& a, std::vector<double>& part) {
+    double meanCost = 0;
+    for (int i = 0; i < n; ++i) meanCost += a[at(i)] * (cost != nullptr ? (*cost)[at(i)] : 1);
+    Densities mean{}, mass{};
     for (const Point& x : pilot.list) {
-      const double q = mixture(a, x.p, n), q0 = mixture(equal, x.p, n);
-      if (!(q > 0) || !(q0 > 0)) continue;
-      const double v = x.w * (x.f / q - mu) * (x.f / q - mu) * q * costOf(a);
-      const double v0 = x.w * (x.f / q0 - mu) * (x.f / q0 - mu) * q0 * costOf(equal);
-      value += v, gain += v0 - v, gain2 += (v0 - v) * (v0 - v);
+      const double q = mixture(a, x.p, n);
+      if (!(q > 0)) continue;
+      for (int i = 0; i < n; ++i) mean[at(i)] += x.w * x.p[at(i)] * (x.f / q), mass[at(i)] += x.w * x.p[at(i)];
     }
-    if (best == nullptr) {
-      best = &a, bestValue = value;
-      continue;
+    double value = 0;
+    // by the mass that the points show, so that these are variances, never less than nothing
+    for (int i = 0; i < n; ++i) {
+      const double whole = mass[at(i)] + pilot.outside[at(i)];
+      mean[at(i)] = whole > 0 ? mean[at(i)] / whole : 0;
+      value += a[at(i)] * pilot.outside[at(i)] * mean[at(i)] * mean[at(i)] * meanCost;
     }
-    const double error = std::sqrt(std::max(0.0, gain2 - gain * gain / std::max<double>(1, double(pilot.list.size()))));
-    if (gain > sigmas * error && value < bestValue) best = &a, bestValue = value;
+    part.assign(parts, 0);
+    for (size_t k = 0; k < parts; ++k) {
+      const Point& x = pilot.list[k];
+      const double q = mixture(a, x.p, n);
+      if (!(q > 0)) continue;
+      for (int i = 0; i < n; ++i) {
+        const double d = x.f / q - mean[at(i)];
+        part[k] += x.w * a[at(i)] * x.p[at(i)] * d * d * meanCost;
+      }
+      value += part[k];
+    }
+    return value;
+  };
+  std::vector<double> ofEqual, part;
+  const double equal = contributions(all.front(), ofEqual);
+  const Densities* best = &all.front();
+  double bestGain = 0;
+  for (const Densities& a : all) {
+    if (&a == &all.front()) continue;
+    const double gain = equal - contributions(a, part);
+    double gain2 = 0;
+    for (size_t k = 0; k < parts; ++k) gain2 += (ofEqual[k] - part[k]) * (ofEqual[k] - part[k]);
+    const double error = std::sqrt(std::max(0.0, gain2 - gain * gain / std::max<double>(1, double(parts))));
+    // the largest gain that is sure, not the largest: that of many candidates is half luck
+    if (const double sure = gain - sigmas * error; sure > bestGain) best = &a, bestGain = sure;
   }
   return *best;
 }

@@ -10,9 +10,10 @@ namespace wardmis {
 // samples, n_l being the number that technique l has drawn.
 Point pooledPoint(double f, const Densities& p, const Densities& n, int techniques);
 
-// The fractions that minimise predicted variance x cost over pilot points, among `candidates`: equal counts, the first
-// of them, unless the gain over these exceeds `sigmas` times its own standard error, estimated from the points.
-Densities autoFractions(const Points& pilot, const Densities* cost, double sigmas = 2);
+// Of `candidates`, the fractions whose gain in predicted variance x cost over equal counts, less `sigmas` times the
+// gain's standard error, is the largest: equal counts, the first of them, where none is above nothing. The variance is
+// that of the multi-sample estimator, sum_i a_i Var_{p_i}[f/q], and both are estimated from pilot points.
+Densities autoFractions(const Points& pilot, const Densities* cost, double sigmas = 1);
 
 // Fractions proportional to powers of `step` up to the one given, equal ones first.
 std::vector<Densities> candidates(int techniques, double step, int power);

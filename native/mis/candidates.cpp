@@ -23,19 +23,25 @@ const CandidateList& candidatesOf(TechniqueMask available) {
   return lists[available & kAllTechniques];
 }
 
-Fractions chooseCandidate(const CandidateSums& sums, float squares, TechniqueMask available, const Fractions& cost) {
+Fractions chooseCandidate(const CandidateSums& sums, TechniqueMask available, const Fractions& cost) {
+  constexpr float kLeastHits = 8;  // fewer say nothing of their own noise
   const CandidateList& list = candidatesOf(available);
+  if (!(sums.hits >= kLeastHits)) return list.at(0);
   const auto objective = [&](int c) {
     const Fractions a = list.at(c);
+    // sum_i a_i E[y_i]^2, which is no variance
+    const float last = sums.integral - a[0] * sums.mean[0][c] - a[1] * sums.mean[1][c];
+    float squares = a[0] * sums.mean[0][c] * sums.mean[0][c] + a[1] * sums.mean[1][c] * sums.mean[1][c];
+    if (a[2] > 0) squares += last * (last / a[2]);
     // the pilot's noise may leave less than nothing
-    return std::max(sums.value[c] - squares, 1e-3f * sums.value[c]) *
+    return std::max(sums.value[c] - squares / sums.hits, 1e-3f * sums.value[c]) *
            (a[0] * cost[0] + a[1] * cost[1] + a[2] * cost[2]);
   };
   int best = 0;
   const float equal = objective(0);
-  float least = equal;
+  float most = 0;  // the largest gain that is sure, not the largest: that of many candidates is half luck
   for (int c = 1; c < kCandidates; ++c)
-    if (const float v = objective(c); v < least && equal - v > 2 * std::sqrt(sums.gain2[c])) best = c, least = v;
+    if (const float sure = equal - objective(c) - std::sqrt(sums.gain2[c]); sure > most) best = c, most = sure;
   return list.at(best);
 }
 

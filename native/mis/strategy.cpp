@@ -178,33 +178,39 @@ double balanceVariance(const Densities& a, const Points& points) {
   return sum;
 }
 
-// The matrix of <p_i, p_k> and the vector <f, p_i> under 1/q, scaled by sqrt(a_i a_k): the diagonal is at most 1.
-std::pair<Eigen::MatrixXd, Eigen::VectorXd> normalEquations(const Points& points, const Densities& a) {
+// The solution of A tau = b, A_ik = <p_i, p_k> and b_i = <f, p_i> under 1/q, with what lies outside the domain, where
+// q = a_i p_i. Scaled so that the diagonal is 1: by sqrt(a_i), a technique with next to no samples would be lost, whose
+// density is as good a control variate as any. Of least length: techniques that duplicate each other make A singular.
+Densities solveNormalEquations(const Points& points, const Densities& a) {
   const int n = points.techniques;
   Eigen::MatrixXd m = Eigen::MatrixXd::Zero(n, n);
-  Eigen::VectorXd b = Eigen::VectorXd::Zero(n);
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(n), scale = Eigen::VectorXd::Zero(n);
   for (const Point& x : points.list) {
     const double q = mixture(a, x.p, n);
     if (!(q > 0)) continue;
     for (int i = 0; i < n; ++i) {
-      const double pi = std::sqrt(a[at(i)]) * x.p[at(i)];
-      b(i) += x.w * x.f * (pi / q);
-      for (int k = 0; k <= i; ++k) m(i, k) += x.w * pi * (std::sqrt(a[at(k)]) * x.p[at(k)] / q);
+      b(i) += x.w * x.f * (x.p[at(i)] / q);
+      for (int k = 0; k <= i; ++k) m(i, k) += x.w * x.p[at(i)] * (x.p[at(k)] / q);
     }
   }
   for (int i = 0; i < n; ++i) {
-    m(i, i) += points.outside[at(i)];  // there q = a_i p_i
-    for (int k = i + 1; k < n; ++k) m(i, k) = m(k, i);
+    if (points.outside[at(i)] > 0) m(i, i) += points.outside[at(i)] / a[at(i)];
+    if (m(i, i) > 0) scale(i) = 1 / std::sqrt(m(i, i));  // infinite without samples that could see it: not usable
   }
-  return {m, b};
-}
-
-// The least-squares solution of least length: techniques that duplicate each other make the matrix singular.
-Eigen::VectorXd solve(const std::pair<Eigen::MatrixXd, Eigen::VectorXd>& equations) {
+  for (int i = 0; i < n; ++i) {
+    b(i) *= scale(i);
+    for (int k = 0; k <= i; ++k) {
+      const bool usable = scale(i) > 0 && scale(k) > 0;
+      m(i, k) = m(k, i) = usable ? (i == k ? 1 : m(i, k) * scale(i) * scale(k)) : 0;
+    }
+  }
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
   decomposition.setThreshold(1e-11);
-  decomposition.compute(equations.first);
-  return decomposition.solve(equations.second);
+  decomposition.compute(m);
+  const Eigen::VectorXd solution = decomposition.solve(b);
+  Densities tau{};
+  for (int i = 0; i < n; ++i) tau[at(i)] = scale(i) * solution(i);
+  return tau;
 }
 
 // One Newton step on V(a) = integral f^2/(a p_1 + (1-a) p_2) from a = 1/2, clamped.
@@ -330,8 +336,8 @@ Densities fractions(Allocation rule, const Points& points, const IntegrandMoment
       a = secondOrder(points);
       break;
     case A::kLinear: {
-      const Eigen::VectorXd solution = solve(normalEquations(points, equalFractions(n)));
-      for (int i = 0; i < n; ++i) a[at(i)] = std::max(0.0, solution(i));  // scaled by sqrt(1/n) and mu alike
+      a = solveNormalEquations(points, equalFractions(n));
+      for (int i = 0; i < n; ++i) a[at(i)] = std::max(0.0, a[at(i)]);
       break;
     }
     default:
@@ -394,12 +400,7 @@ Densities varianceAwareFactors(const IntegrandMoments& m) {
   return v;
 }
 
-Densities optimalTau(const Points& points, const Densities& a) {
-  const Eigen::VectorXd solution = solve(normalEquations(points, a));
-  Densities tau{};
-  for (int i = 0; i < points.techniques; ++i) tau[at(i)] = std::sqrt(a[at(i)]) * solution(i);
-  return tau;
-}
+Densities optimalTau(const Points& points, const Densities& a) { return solveNormalEquations(points, a); }
 
 Contributions contributions(Weights rule, const Densities& a, const Points& points, const IntegrandMoments& m) {
   const int n = points.techniques;
@@ -437,15 +438,14 @@ double logVariance(Weights rule, const Densities& a, const Points& points, const
   for (int i = 0; i < n; ++i) logA[at(i)] = std::log(a[at(i)]);
   if (rule == W::kNonbalance) {
     variance = m.variance;
-    // fractions beyond double's range
-    if (*std::min_element(a.begin(), a.begin() + n) < 1e-290) {
-      Densities x{};
-      for (int i = 0; i < n; ++i) x[at(i)] = -m.logSecond[at(i)];
-      LogSum sum;
-      for (int i = 0; i < n; ++i) sum.add(1, x[at(i)]);
-      for (int i = 0; i < n; ++i)
-        if (a[at(i)] < 1e-290) logA[at(i)] = x[at(i)] - sum.log();
-    }
+    // Fractions below double's range: those of Def. 9 follow from the moments; another one that is 0 leaves its part
+    // out, which is no finite variance.
+    Densities x{};
+    LogSum sum;
+    for (int i = 0; i < n; ++i) sum.add(1, x[at(i)] = -m.logSecond[at(i)]);
+    constexpr double kLeast = -667;  // ln 1e-290
+    for (int i = 0; i < n; ++i)
+      if (logA[at(i)] < kLeast && x[at(i)] - sum.log() < kLeast) logA[at(i)] = x[at(i)] - sum.log();
   } else {
     variance = contributions(rule, a, points, m).variance;
   }

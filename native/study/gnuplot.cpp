@@ -48,7 +48,9 @@ void drawWithGnuplot(const std::string& path, int width, int height, const std::
   std::signal(SIGPIPE, SIG_IGN);  // a gnuplot that ends early is told by its exit code
   FILE* pipe = popen(fmt::format("gnuplot - >'{}' 2>&1", messages).c_str(), "w");
   if (pipe == nullptr) throw Error(ExitCode::kFile, "no process for gnuplot", "close other programs");
-  fmt::print(pipe, "set terminal {}\nset output '{}'\n{}\nunset output\n", terminal, temporary, script);
+  const std::string commands =
+      fmt::format("set terminal {}\nset output '{}'\n{}\nunset output\n", terminal, temporary, script);
+  std::fwrite(commands.data(), 1, commands.size(), pipe);  // one that is not there does not read them: told below
   const int status = pclose(pipe);
   const auto read = [](const std::string& file) {
     std::ifstream in(file, std::ios::binary);

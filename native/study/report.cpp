@@ -173,19 +173,30 @@ json studyJson(const Study& s) {
 }
 
 std::string studyCsv(const Study& s) {
+  const int n = s.exact.points.techniques;
   std::string out =
-      "strategy,samples,trials,seed,exact_integral,nvar,predicted_variance,mean,bias_z,variance,variance_low95,"
-      "variance_high95,"
-      "variance_over_predicted,seconds_per_trial\n";
-  const auto cell = [](double x) { return std::isfinite(x) ? fmt::format("{:.17g}", x) : std::string(); };
+      "strategy,samples,trials,seed,exact_integral,nvar,nvar_log10,predicted_variance,mean,bias_z,variance,"
+      "variance_low95,variance_high95,variance_over_predicted,seconds_per_trial,variance_x_seconds,"
+      "counts_follow_samples";
+  for (const char* what : {"fraction", "count", "cost_ns"})
+    for (int i = 0; i < n; ++i) out += fmt::format(",{}_{}", what, name(s.input.techniques[at(i)]));
+  out += "\n";
+  const auto cell = [](double x) { return std::isfinite(x) ? fmt::format(",{:.17g}", x) : std::string(","); };
   for (size_t k = 0; k < s.runs.size(); ++k)
     for (const StrategyRun& r : s.runs[k]) {
       const Derived d = derive(s, r);
-      out += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", r.strategy->name, s.settings[k].samples,
-                         s.settings[k].trials, s.settings[k].seed, cell(s.exact.moments.integral),
-                         cell(std::exp(r.exact.logVariance)), cell(r.predictedVariance.value_or(std::nan(""))),
-                         cell(r.estimate.count() > 0 ? r.estimate.mean() : std::nan("")), cell(d.z), cell(d.variance),
-                         cell(d.low), cell(d.high), cell(d.ratio), cell(r.seconds));
+      out +=
+          fmt::format("{},{},{},{}", r.strategy->name, s.settings[k].samples, s.settings[k].trials, s.settings[k].seed);
+      for (double x :
+           {s.exact.moments.integral, std::exp(r.exact.logVariance), r.exact.logVariance / std::log(10.0),
+            r.predictedVariance.value_or(std::nan("")), r.estimate.count() > 0 ? r.estimate.mean() : std::nan(""), d.z,
+            d.variance, d.low, d.high, d.ratio, r.seconds, d.varianceCost})
+        out += cell(x);
+      out += r.strategy->knowledge != Knowledge::kGiven ? ",1" : ",0";
+      for (int i = 0; i < n; ++i) out += cell(r.exact.fractions[at(i)]);
+      for (int i = 0; i < n; ++i) out += fmt::format(",{}", r.counts[at(i)]);
+      for (int i = 0; i < n; ++i) out += cell(s.costNanoseconds[at(i)]);
+      out += "\n";
     }
   return out;
 }

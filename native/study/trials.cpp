@@ -24,6 +24,7 @@ size_t at(int i) { return static_cast<size_t>(i); }
 
 constexpr int kPasses = 4;             // of progressive strategies
 constexpr double kPilotShare = 0.125;  // of the samples of pilot strategies
+constexpr int kLeastPilot = 8;         // samples of each technique: fewer have no spread to speak of
 constexpr double kLeastLearnt = 0.02;  // fraction of any technique, where fractions follow samples
 
 // The samples of one trial.
@@ -167,7 +168,7 @@ double progressive(const Strategy& s, const Trial& t, int samples, Counts& last)
 
 double fromPilot(const Trial& t, int samples, const Densities* cost, Counts& last) {
   const int n = t.techniques;
-  const int each = std::max(1, static_cast<int>(samples * kPilotShare / n));
+  const int each = std::max(kLeastPilot, static_cast<int>(samples * kPilotShare / n));
   Counts pilot{};
   std::fill_n(pilot.begin(), n, each);
   const int rest = samples - n * each;

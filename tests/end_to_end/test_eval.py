@@ -276,6 +276,8 @@ class Lines(Eval):
             (("--brdf", "lafortune-phong", "--alpha", "0.1"), "--alpha"),
             (("--precision", "half"), "longdouble"),
             (("--rho-d", "-1"), "--rho-d"),
+            *(((option, "nan"), option) for option in ("--alpha", "--m", "--rho-s", "--rho-d")),
+            (("--alpha-x", "nan", "--alpha-y", "0.1"), "--alpha-x"),
         ):
             with self.subTest(options=options):
                 self.refused(2, "eval", *options, says=[says])

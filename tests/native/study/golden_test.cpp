@@ -11,6 +11,16 @@ namespace {
 
 using nlohmann::json;
 
+// Where the golden file is wrong: it scales the matrix of the optimal weights by sqrt(a_i), and so loses a technique of
+// a_1 < 1e-16, whose density is a control variate nevertheless. Independent: integral f^2/q - b^T A^-1 b in the limit
+// a_1 = 0, q = p_2, by composite Gauss-Legendre in polar coordinates about the mirror direction, in numpy; 16 and 40
+// nodes a panel agree to 1e-10.
+struct Correction {
+  std::string_view model;
+  double alpha, theta, value;
+};
+constexpr Correction kCorrections[] = {{"ward", 0.05, 0, 0.0046814941000}, {"ward-gmd", 0.001, 30, 0.0284378295980}};
+
 // Every number under `expect` that `ours` must have to a relative error of 1e-6, as "path: ours, expected".
 void compare(const json& expect, const json& ours, const std::string& path, double tolerance,
              std::vector<std::string>& wrong) {
@@ -39,7 +49,12 @@ void check(const json& c) {
   const Exact exact = solve(*makeProblem(input));
   const json ours = expectJson(input, exact);
   std::vector<std::string> wrong;
-  compare(c["expect"], ours, "", 1e-6, wrong);
+  json expect = c["expect"];
+  for (const Correction& k : kCorrections)
+    if (c["input"]["model"] == k.model && c["input"].value("alpha", 0.0) == k.alpha &&
+        c["input"]["theta_o_deg"] == k.theta && c["input"].value("joint", false) && c["input"]["mode"] == "full")
+      expect["NVar"]["optimal weights inv_m2"] = k.value;
+  compare(expect, ours, "", 1e-6, wrong);
   for (const std::string& w : wrong)
     ADD_FAILURE() << c["input"].dump() << w << " (" << exact.points.list.size() << " points)";
   EXPECT_LT(exact.integralError, 1e-8) << c["input"].dump();
@@ -51,6 +66,29 @@ TEST(Golden, EveryEstimatorCase) {
 }
 TEST(Golden, EveryThreeTechniqueCase) {
   for (const json& c : test::golden()["three_technique_cases"]) check(c);
+}
+
+// The same in the planar reduction, where the error was a factor of 257 (value: numpy, composite Gauss-Legendre).
+TEST(Exact, OptimalWeightsUseATechniqueWithNextToNoSamples) {
+  const json j{{"model", "ward-gmd"}, {"mode", "planar"}, {"alpha", 0.08}, {"rho_d", 0.4},
+               {"rho_s", 0.5},        {"R", 1.0},         {"joint", true}, {"theta_o_deg", 23.0}};
+  const StudyInput input = studyInputFromJson(j);
+  const json ours = expectJson(input, solve(*makeProblem(input)));
+  EXPECT_LT(ours["fractions"]["inv_m2"][0].get<double>(), 1e-16);
+  EXPECT_NEAR(ours["NVar"]["optimal weights inv_m2"].get<double>(), 0.18336300, 1e-7);
+}
+
+// Weights that do not know the counts need samples of every technique: without a share, the variance is infinite.
+TEST(Exact, NonbalanceWithoutAShareIsInfinite) {
+  StudyInput input;
+  const Exact exact = solve(*makeProblem(input));
+  const Densities cost{1e300, 1e-300};
+  for (const char* name : {"variance", "second-moment-nonbalance"}) {
+    const Prediction p = predict(*findStrategy(name), exact, &cost);
+    EXPECT_EQ(p.fractions[0], 0) << name;
+    EXPECT_TRUE(std::isinf(p.logVariance)) << name;
+  }
+  EXPECT_TRUE(std::isfinite(predict(*findStrategy("second-moment"), exact, &cost).logVariance));
 }
 
 // A diffuse part far from a lobe: m^2_1 = 1e80 comes from the horizon's edge, apart from the nodes, which must not be
