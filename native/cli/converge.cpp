@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -117,7 +118,7 @@ int run(const Options& o, const std::string& command) {
     observer.progress({"report", "", 0, 0, 1, 0.98 + 0.02 * part, wallSeconds() - start, 0});
   };
   phase(0);
-  if (!e.complete && (e.runs.empty() || e.runs.size() < e.configurations.size()))
+  if (!e.complete && std::all_of(e.runs.begin(), e.runs.end(), [](const auto& runs) { return runs.empty(); }))
     throw Error(ExitCode::kCancelled, "stopped before the first runs; what is done is kept in " + o.folder,
                 "the same command goes on from there");
   const Analysis analysis = analyse(e, phase);

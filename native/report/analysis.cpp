@@ -206,8 +206,9 @@ class Reporter {
       const auto last = Bootstrap(curves.seeds()).interval([&](std::span<const uint32_t> draw) {
         return std::optional(curves.mean(draw, curves.checkpoints() - 1).error.back());
       });
-      target =
-          std::max({target, last ? kTargetFactor * last->high : 0, kFloorFactor * floorOf(*m.reference, *metric_)});
+      target = std::max({target, last ? kTargetFactor * last->high : 0,
+                         kFloorFactor * (metric_->value == &Metrics::relMseTrimmed ? m.reference->trimmedFloor
+                                                                                   : floorOf(*m.reference, *metric_))});
     }
     target_ = e_.target.value_or(target > 0 ? roundUp(target) : 1e-3);
     time_ = time;
@@ -270,7 +271,8 @@ class Reporter {
         const double floor = floorOf(r, metric);
         const Interval i = mean([&](const Run& run) { return run.checkpoints[k].error.*metric.value - floor; });
         j[metric.name] = toJson(i);
-        near = near || (floor > 0 && i.value < kFloorFactor * floor);
+        const double share = metric.value == &Metrics::relMseTrimmed ? r.trimmedFloor : floor;
+        near = near || (share > 0 && i.value < kFloorFactor * share);
       }
       if (k + 1 == m.runs->front().checkpoints.size() && m.runs->front().flip)
         j["flip"] = toJson(mean([](const Run& run) { return run.flip.value_or(0); }));

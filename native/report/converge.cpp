@@ -237,18 +237,23 @@ class Study {
           std::clamp(forReference / double(targets) / kReferenceChunks / perSample, 1.0, double(1u << 24)));
   }
 
+  // Mean over the configurations.
   double secondsPerSample() const {
-    RenderSettings s = experiment_.configurations[experiment_.baseline].settings;
-    s.spp = 8, s.seed = kReferenceSeed - 2, s.threads = plan_.threads;
-    double seconds = 0;
-    RenderObserver watch;
-    watch.stop = observer_.stop;
-    for (int round = 0; round < 2; ++round) {  // the first warms the caches
-      Statistics st;
-      const FilmBuffer film = render(built_, s, st, watch);
-      seconds = (st.pilotSeconds + st.renderSeconds) / std::max(1u, film.samples);
+    double sum = 0;
+    for (const Configuration& c : experiment_.configurations) {
+      RenderSettings s = c.settings;
+      s.spp = 8, s.seed = kReferenceSeed - 2, s.threads = plan_.threads;
+      RenderObserver watch;
+      watch.stop = observer_.stop;
+      double seconds = 0;
+      for (int round = 0; round < (sum > 0 ? 1 : 2); ++round) {  // the first of all warms the caches
+        Statistics st;
+        const FilmBuffer film = render(built_, s, st, watch);
+        seconds = (st.pilotSeconds + st.renderSeconds) / std::max(1u, film.samples);
+      }
+      sum += seconds;
     }
-    return std::max(seconds, 1e-9);
+    return std::max(sum / double(experiment_.configurations.size()), 1e-9);
   }
 
   // The settings of one configuration for each kind of light that is estimated.
@@ -310,7 +315,8 @@ class Study {
     }
     r.setVariance(std::move(variance));
     if (!settings.is_object() || settings.value("sampler", "independent") == "independent") return;
-    r.mseFloor = r.relMseFloor = 0;  // an upper bound is not what may be subtracted; for the test of bias it is careful
+    r.mseFloor = r.relMseFloor = r.trimmedFloor =
+        0;  // an upper bound is not what may be subtracted; for the test of bias it is careful
     if (observer_.warn)
       observer_.warn(
           fmt::format("{} was rendered with evenly spread points, for which its Variance pass is an upper bound: "

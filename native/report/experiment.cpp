@@ -15,12 +15,17 @@ using nlohmann::json;
 
 void Reference::setVariance(std::vector<float> v) {
   variance = std::move(v);
-  mseFloor = relMseFloor = 0;
+  mseFloor = relMseFloor = trimmedFloor = 0;
+  std::vector<double> shares(variance.size() / 3);
   for (size_t i = 0; i < variance.size(); ++i) {
-    mseFloor += double(variance[i]) / double(variance.size());
-    relMseFloor +=
-        double(variance[i]) / (double(image.rgb[i]) * double(image.rgb[i]) + kRelMseEpsilon) / double(variance.size());
+    const double r = double(image.rgb[i]), n = double(variance.size());
+    mseFloor += double(variance[i]) / n;
+    relMseFloor += double(variance[i]) / (r * r + kRelMseEpsilon) / n;
+    shares[i / 3] += double(variance[i]) / (r * r + kRelMseEpsilon) / 3;
   }
+  std::sort(shares.begin(), shares.end());
+  const size_t keep = shares.size() - (shares.size() + 999) / 1000;
+  for (size_t i = 0; i < keep; ++i) trimmedFloor += shares[i] / double(keep);
 }
 
 json toJson(const Run& run) {

@@ -54,7 +54,9 @@ struct Reference {
   std::vector<float> variance;  // of the image, per value; empty if unknown
   uint32_t spp = 0, chunks = 0;
   double seconds = 0;
-  double mseFloor = 0, relMseFloor = 0;  // its variance's share of an error; 0 where unknown
+  // Its variance's share of an error; 0 where unknown. Trimmed: without the largest 0.1 % of the shares, about what the
+  // trimmed relMSE has of it, which is no difference of expectations and is not subtracted.
+  double mseFloor = 0, relMseFloor = 0, trimmedFloor = 0;
 
   bool known() const { return !variance.empty(); }
   void setVariance(std::vector<float> v);  // once there is the image

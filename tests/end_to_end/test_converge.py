@@ -477,6 +477,30 @@ class Converge(CommandTest):
             self.assertEqual(c["equal_samples"]["ratio"], {"mean": 1, "low": 1, "high": 1})
         self.assertEqual(self.of(report, "sooner")["time_to_target"]["verdict"], "faster")
         self.assertEqual(self.of(report, "again")["time_to_target"]["verdict"], "tie")
+        for group in self.of(report, "sooner")["groups"]:
+            self.assertAlmostEqual(group["ratio"]["mean"], 0.62, places=9)
+            self.assertEqual(group["error_ratio"]["mean"], 1)
+        cost, run = self.of(report, "equal")["cost"], runs["equal"][0]
+        samples = np.mean([sum(run["samples"]) for run in runs["equal"]])
+        self.assertAlmostEqual(cost["ns_per_sample"], 1e9 * run["checkpoints"][-1]["cpu"] / samples, places=3)
+        self.assertAlmostEqual(
+            cost["rays_per_path"],
+            np.sum([r["rays"] for r in runs["equal"]]) / np.sum([r["rays"][0] for r in runs["equal"]]),
+            places=9,
+        )
+        error = np.mean([run["checkpoints"][-1][key] for run in runs["equal"]])
+        efficiency = self.of(report, "equal")["efficiency"]["variance_x_seconds"]["mean"]
+        self.assertAlmostEqual(
+            efficiency / (error * run["checkpoints"][-1]["cpu"]), 1, delta=0.1
+        )  # the reference's share apart
+        shares = self.of(report, "equal")["allocation"]
+        self.assertAlmostEqual(shares["lobe"] + shares["cosine"] + shares["light"], 1, places=6)
+        self.assertIsNone(shares["clamped"])
+        self.assertEqual(shares["starved"], 0)
+        for technique in report["techniques"]:
+            self.assertAlmostEqual(
+                technique["variance_x_cost"] / (technique["variance"] * technique["ns_per_sample"]), 1, places=9
+            )
         wins = self.of(report, "sooner")["wins"]
         self.assertGreater(wins["better"], 0.5)
         self.assertEqual(wins["worse"], 0)
