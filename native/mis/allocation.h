@@ -103,15 +103,10 @@ struct Mixture {
       for (int k = 0; k < kTechniques; ++k) sum += (ap[k] / ap[i]) * (ap[k] / ap[i]);  // as ratios: p^2 overflows
       return 1 / (sum * n[i] * p[i]);
     }
-    if (rule == Weights::kCutoff) {
-      const float least = static_cast<float>(kCutoffRatio) * top;
-      if (ap[i] < least) return 0;
-      for (int k = 0; k < kTechniques; ++k) sum += ap[k] >= least ? ap[k] : 0;
-      return 1 / sum;
-    }
-    for (int k = 0; k < kTechniques; ++k)  // the largest takes all; of equal ones, the first
-      if (ap[k] > ap[i] || (k < i && ap[k] == ap[i])) return 0;
-    return 1 / (n[i] * p[i]);
+    const float least = (rule == Weights::kCutoff ? static_cast<float>(kCutoffRatio) : kTieRatio<float>)*top;
+    if (ap[i] < least) return 0;
+    for (int k = 0; k < kTechniques; ++k) sum += ap[k] >= least ? ap[k] : 0;
+    return 1 / sum;
   }
 };
 

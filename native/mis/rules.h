@@ -27,11 +27,17 @@ enum class Weights : uint8_t {
   kNonbalance,     // p_i (Eq. 14)
   kPower,          // (a_i p_i)^2 (Veach and Guibas 1995)
   kCutoff,         // a_i p_i, dropped below a tenth of the largest (Veach and Guibas 1995)
-  kMaximum,        // the largest a_i p_i takes all (Veach and Guibas 1995)
+  kMaximum,        // the largest a_i p_i takes all, equal ones share as in balance (Veach and Guibas 1995)
   kVarianceAware,  // v_i a_i p_i, v_i = m^2_i/(m^2_i - mu^2) (Grittmann et al. 2019)
   kOptimal,        // Kondapaneni et al. 2019, for given fractions
 };
+// What a_i p_i must be of the largest to count. Of `maximum` it is 1 but for rounding: where two techniques have the
+// same density, which of the two computed values is larger is chance, and the estimate must not hang on it.
 inline constexpr double kCutoffRatio = 0.1;
+template <class T>
+inline constexpr T kTieRatio = T(1) - T(1e-9);
+template <>
+inline constexpr float kTieRatio<float> = 1 - 1e-6f;
 
 std::string_view name(Allocation);
 std::string_view name(Weights);

@@ -366,18 +366,15 @@ double weightedValue(Weights rule, int i, int n, double f, const Densities& p, c
       for (int k = 0; k < n; ++k) sum += square(a[at(k)] * p[at(k)] / own);
       return f / (sum * p[at(i)]);
     }
-    case W::kCutoff: {
+    case W::kCutoff:
+    case W::kMaximum: {
+      const double ratio = rule == W::kCutoff ? kCutoffRatio : kTieRatio<double>;
       double top = 0, sum = 0;
       for (int k = 0; k < n; ++k) top = std::max(top, a[at(k)] * p[at(k)]);
-      if (!(own > 0) || own < kCutoffRatio * top) return 0;
+      if (!(own > 0) || own < ratio * top) return 0;
       for (int k = 0; k < n; ++k)
-        if (a[at(k)] * p[at(k)] >= kCutoffRatio * top) sum += a[at(k)] * p[at(k)];
+        if (a[at(k)] * p[at(k)] >= ratio * top) sum += a[at(k)] * p[at(k)];
       return a[at(i)] * (f / sum);
-    }
-    case W::kMaximum: {
-      for (int k = 0; k < n; ++k)
-        if (a[at(k)] * p[at(k)] > own || (k < i && a[at(k)] * p[at(k)] == own)) return 0;
-      return own > 0 ? f / p[at(i)] : 0;
     }
     case W::kVarianceAware: {
       double sum = 0;

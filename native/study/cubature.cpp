@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/cubature.h"
 
+#include <algorithm>
 #include <boost/math/quadrature/gauss.hpp>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
@@ -42,6 +43,7 @@ struct Cubature::Cell {
 
   // Of the current integrands.
   std::vector<double> value, error;
+  std::vector<double> difference;  // of the two rules, the larger of both directions
   bool alongU = true;
 
   int rows() const { return static_cast<int>(points.size()) / kNodes; }
@@ -61,7 +63,7 @@ Cubature::Cubature(const Problem& problem) : problem_(problem), charts_(problem.
 Cubature::~Cubature() = default;
 
 Cubature::Cell Cubature::make(int chart, double u0, double u1, double v0, double v1) const {
-  Cell cell{chart, u0, u1, v0, v1, {}, {}, {}, true};
+  Cell cell{chart, u0, u1, v0, v1, {}, {}, {}, {}, true};
   const Chart& map = charts_[static_cast<size_t>(chart)];
   const Rule& r = rule();
   const int rows = map.dimensions == 1 ? 1 : kNodes;
@@ -79,14 +81,14 @@ Cubature::Cell Cubature::make(int chart, double u0, double u1, double v0, double
   return cell;
 }
 
-void Cubature::refine(const Integrands& integrands, double tolerance, size_t more) {
+std::vector<double> Cubature::refine(const Integrands& integrands, double tolerance, size_t more) {
   const size_t most = cells_.size() + more;
   const auto n = static_cast<size_t>(integrands.count);
   const Rule& r = rule();
   std::vector<double> total(n, 0), h(n);
   const auto measure = [&](Cell& cell) {
     std::vector<double> inU(n, 0), inV(n, 0), size(n, 0);
-    cell.value.assign(n, 0), cell.error.assign(n, 0);
+    cell.value.assign(n, 0), cell.error.assign(n, 0), cell.difference.assign(n, 0);
     for (size_t m = 0; m < cell.points.size(); ++m) {
       const Point& p = cell.points[m];
       integrands.evaluate(p, h.data());
@@ -106,6 +108,7 @@ void Cubature::refine(const Integrands& integrands, double tolerance, size_t mor
       };
       const double eu = estimate(cell.value[k] - inU[k]), ev = estimate(cell.value[k] - inV[k]);
       cell.error[k] = eu + ev;
+      cell.difference[k] = std::max(std::abs(cell.value[k] - inU[k]), std::abs(cell.value[k] - inV[k]));
       const double scale = std::max(std::abs(total[k]), size[k]);
       worstU = std::max(worstU, eu / scale), worstV = std::max(worstV, ev / scale);
     }
@@ -152,6 +155,37 @@ void Cubature::refine(const Integrands& integrands, double tolerance, size_t mor
     cells_.push_back(std::move(two));
     queue.emplace(worst(cells_[c]), c);
     queue.emplace(worst(cells_.back()), cells_.size() - 1);
+  }
+  std::vector<double> difference(n, 0);
+  for (const Cell& cell : cells_)
+    for (size_t k = 0; k < n; ++k) difference[k] += cell.difference[k] * cell.difference[k];
+  for (double& d : difference) d = std::sqrt(d);
+  return difference;
+}
+
+void Cubature::splitAtJumps(const std::function<unsigned(const Point&)>& side) {
+  for (size_t c = 0; c < charts_.size(); ++c) {
+    if (charts_[c].dimensions != 1) continue;
+    const auto sideAt = [&](double u) { return side(charts_[c].at(u, 0.5)); };
+    std::vector<double> nodes;
+    for (const Cell& cell : cells_)
+      if (cell.chart == static_cast<int>(c))
+        for (double x : rule().x) nodes.push_back(0.5 * (cell.u0 + cell.u1) + 0.5 * (cell.u1 - cell.u0) * x);
+    std::sort(nodes.begin(), nodes.end());
+    for (size_t k = 0; k + 1 < nodes.size(); ++k) {
+      double low = nodes[k], high = nodes[k + 1];
+      const unsigned below = sideAt(low);
+      if (below == sideAt(high)) continue;
+      for (double middle; (middle = 0.5 * (low + high)) > low && middle < high;)
+        (sideAt(middle) == below ? low : high) = middle;
+      for (Cell& cell : cells_) {
+        if (cell.chart != static_cast<int>(c) || !(cell.u0 < high && high < cell.u1)) continue;
+        Cell right = make(cell.chart, high, cell.u1, cell.v0, cell.v1);
+        cell = make(cell.chart, cell.u0, high, cell.v0, cell.v1);
+        cells_.push_back(std::move(right));
+        break;
+      }
+    }
   }
 }
 

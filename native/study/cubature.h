@@ -20,8 +20,13 @@ class Cubature {
   ~Cubature();
 
   // Halves cells until the estimated error of each integral is below `tolerance` of its value, or `more` cells have
-  // been added. May be called again with others: what was refined stays so.
-  void refine(const Integrands& integrands, double tolerance, size_t more = 4000);
+  // been added. May be called again with others: what was refined stays so. Returns, for
+  // integrands that jump, their absolute errors: the differences of the two rules, of the sign of chance in each cell.
+  std::vector<double> refine(const Integrands& integrands, double tolerance, size_t more = 4000);
+
+  // In one dimension, where integrands jump at points: `side` tells the sides apart, and cells are split where it
+  // changes between two nodes, so that each integral is smooth in every cell. (The rules do not always see a jump.)
+  void splitAtJumps(const std::function<unsigned(const Point&)>& side);
 
   // The nodes, with the techniques' masses outside the domain.
   Points points() const;

@@ -22,6 +22,12 @@ double sum(const Densities& p, int n) {
   return s;
 }
 
+Densities equalShares(int n) {
+  Densities a{};
+  std::fill_n(a.begin(), n, 1.0 / n);
+  return a;
+}
+
 // f, g p_i, g^2 p_i, f^2/q and the products of densities under 1/q, q = equal mixture.
 Integrands moments(int n) {
   return {2 + 2 * n + n * n, [n](const Point& x, double* out) {
@@ -75,8 +81,7 @@ Integrands deviations(const Points& points, const IntegrandMoments& m) {
 // The heuristics that jump: their edges run through the cells, so that less must do.
 Integrands jumps(int n) {
   return {4 * n, [n](const Point& x, double* out) {
-            Densities a{};
-            std::fill_n(a.begin(), n, 1.0 / n);
+            const Densities a = equalShares(n);
             for (Weights rule : {Weights::kCutoff, Weights::kMaximum})
               for (int i = 0; i < n; ++i) {
                 const double y = weightedValue(rule, i, n, x.f, x.p, a, {});
@@ -123,8 +128,29 @@ Exact solve(const Problem& problem, size_t effort) {
   };
   measure();
   cubature.refine(deviations(e.points, e.moments), 1e-9, effort);
-  cubature.refine(jumps(n), 1e-3, std::min<size_t>(50, effort));
+  // In one dimension the jumps are points, at which cells are split; in two they are lines through the cells.
+  cubature.splitAtJumps([n](const Point& x) {
+    unsigned counted = 0;
+    for (Weights rule : {Weights::kCutoff, Weights::kMaximum})
+      for (int i = 0; i < n; ++i)
+        counted = 2 * counted + (weightedValue(rule, i, n, 1, x.p, equalShares(n), {}) > 0 ? 1 : 0);
+    return counted;
+  });
+  const bool flat = problem.charts().front().dimensions == 1;
+  const std::vector<double> jumpErrors =
+      cubature.refine(jumps(n), flat ? 1e-9 : 1e-3, std::min<size_t>(flat ? 200 : 50, effort));
   measure();
+  const Densities equal = equalShares(n);
+  const auto jumpError = [&](Weights rule, int first) {
+    const Contributions c = contributions(rule, equal, e.points, e.moments);
+    double sum = 0, error = 0;
+    for (int i = 0; i < n; ++i) {
+      const size_t k = at(first + 2 * i);
+      sum += c.variance[at(i)], error += jumpErrors[k + 1] + 2 * std::abs(c.mean[at(i)]) * jumpErrors[k];
+    }
+    return sum > 0 ? error / sum : 0;
+  };
+  e.cutoffError = jumpError(Weights::kCutoff, 0), e.maximumError = jumpError(Weights::kMaximum, 2 * n);
 
   e.integralError = relativeError(e.points, [](const Point& x) { return x.f; });
   for (const Integrands& which : {moments(n), deviations(e.points, e.moments)})
@@ -211,6 +237,7 @@ json expectJson(const StudyInput& input, const Exact& e, int samples) {
   variance("power2 equal", W::kPower, equal);
   variance("cutoff equal", W::kCutoff, equal);
   variance("maximum equal", W::kMaximum, equal);
+  v["cutoff equal_relerr"] = e.cutoffError, v["maximum equal_relerr"] = e.maximumError;
   variance("variance-aware equal", W::kVarianceAware, equal);
   for (int i = 0; i < n; ++i)
     put(v, fmt::format("pure technique {}", i + 1),

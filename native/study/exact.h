@@ -16,6 +16,9 @@ struct Exact {
   double lobeNormalization = 1;
   double integralError = 0;  // the quadrature's estimate for the integral (L_o), relative
   double relativeError = 0;  // the largest estimate of all integrals that the estimators' moments are made of
+  // The estimate for N Var of cutoff and maximum with equal counts, relative: their weights jump along lines through the
+  // cells.
+  double cutoffError = 0, maximumError = 0;
 };
 // effort: cells that each step of the quadrature may add; fewer than it asks for where the last digits are not needed.
 Exact solve(const Problem& problem, size_t effort = 4000);

@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
 
 #include "math/number.h"
@@ -40,6 +41,59 @@ double meanWithMixedIndices(const Exact& e) {
   return sum / e.moments.integral;
 }
 
+// The printed formulas of the planar reduction. All in x = cos(theta_i), with t = tan((theta_i - theta_o)/2), and the
+// parts of cos(theta_h) and (h.o): cos((theta_i -+ theta_o)/2) = sqrt((1+x)/2) C +- sqrt((1-x)/2) S.
+struct Planar {
+  double alpha, thetaO;  // radians
+  double c = std::cos(thetaO / 2), s = std::sin(thetaO / 2);
+
+  static double a(double x) { return std::sqrt((1 + x) / 2); }
+  static double b(double x) { return std::sqrt((1 - x) / 2); }
+  double t(double x) const { return (b(x) * c - a(x) * s) / (a(x) * c + b(x) * s); }
+  // rho_s = 1: f_s x^2, for an exponent
+  double lobe(double x, double exponent) const {
+    return x * x * std::exp(-exponent) / (4 * kPid * alpha * alpha * std::sqrt(x * std::cos(thetaO)));
+  }
+  double walter(double x, double b) const {
+    return std::exp(-t(x) * t(x) / (alpha * alpha)) /
+           (4 * kPid * alpha * alpha * (a(x) * c - b * s) * std::pow(a(x) * c + b * s, 3));
+  }
+  // Over [0, 1], in theta_i and split at the lobe, which is narrow.
+  template <class F>
+  double integrate(const F& f) const {
+    const auto inTheta = [&](double theta) { return f(std::cos(theta)) * std::sin(theta); };
+    double sum = 0;
+    std::vector<double> ends{0, kPid / 2};
+    for (double k : {0.0, 1.0, 3.0, 8.0, 20.0, 60.0})
+      for (double sign : {-1.0, 1.0})
+        if (const double at = thetaO + sign * k * alpha; at > 0 && at < kPid / 2) ends.push_back(at);
+    std::sort(ends.begin(), ends.end());
+    for (size_t k = 0; k + 1 < ends.size(); ++k)
+      if (ends[k + 1] > ends[k])
+        sum += boost::math::quadrature::gauss_kronrod<double, 31>::integrate(inTheta, ends[k], ends[k + 1], 10, 1e-10);
+    return sum;
+  }
+};
+
+void addPlanar(std::vector<Erratum>& list, double alpha, double degrees) {
+  const Planar p{alpha, degrees * kPid / 180};
+  const std::string of = fmt::format("ward, alpha = {:g}, theta_o = {:g}", alpha, degrees);
+  const double a2 = alpha * alpha;
+  const double right = p.integrate([&](double x) { return p.lobe(x, p.t(x) * p.t(x) / a2); });
+  list.push_back({"(17)", "its last line's + in the numerator of t: the integral", of, p.integrate([&](double x) {
+                    const double t =
+                        (Planar::b(x) * p.c + Planar::a(x) * p.s) / (Planar::a(x) * p.c + Planar::b(x) * p.s);
+                    return p.lobe(x, t * t / a2);
+                  }) / right});
+  list.push_back({"(18)", "exponent t^2, without /alpha^2: the integral", of,
+                  p.integrate([&](double x) { return p.lobe(x, p.t(x) * p.t(x)); }) / right});
+  list.push_back({"(19)", "g_1 without 4 pi alpha^2 sqrt(x cos(theta_o)): the integral", of,
+                  p.integrate([&](double x) { return x * x * std::exp(-p.t(x) * p.t(x) / a2); }) / right});
+  list.push_back({"(21)", "sin before sqrt((1-x)/2): integral of P", of, p.integrate([&](double x) {
+                    return p.walter(x, std::sin(Planar::b(x)));
+                  }) / p.integrate([&](double x) { return p.walter(x, Planar::b(x)); })});
+}
+
 }  // namespace
 
 std::vector<Erratum> errata() {
@@ -55,6 +109,15 @@ std::vector<Erratum> errata() {
          meanWithDenominator(e, [](const Point& x) { return x.p[0] / (2 * kPid) + x.p[1] * x.p[1] / kPid; })});
     list.push_back({"(13)", "p_1(X_1j) + p_2(X_2j) in the denominator: mean of F_eq", of, meanWithMixedIndices(e)});
   }
+  for (double m : {10.0, 100.0})
+    for (double theta : {30.0, 60.0}) {
+      StudyInput in;
+      in.brdf = StudyBrdf::kLafortunePhong, in.m = m, in.thetaO = theta;
+      // of cos^m(theta_i): the integral of (m+2)/(2 pi) cos^(m+2) is (m+2)/(m+3)
+      list.push_back({"(9)", "cos^m(theta_i), not of the angle to the mirror direction: L_o",
+                      fmt::format("Lafortune-Phong, m = {:g}, theta_o = {:g}", m, theta),
+                      (m + 2) / (m + 3) / solve(*makeProblem(in)).moments.integral});
+    }
   list.push_back({"(14)", "R rho_s (m+2)/pi as printed, on [0, 1]", "any m", 1 / kPid});
   for (double theta : {30.0, 60.0, 80.0})
     for (double alpha : {0.01, 0.1, 0.5}) {
@@ -66,6 +129,7 @@ std::vector<Erratum> errata() {
       const std::string of = fmt::format("ward, alpha = {:g}, theta_o = {:g}", alpha, theta);
       list.push_back({"(16) to (26)", "the planar reduction, theta_h = |theta_i - theta_o|/2 for every azimuth", of,
                       p.moments.integral / solve(*makeProblem(full)).moments.integral});
+      addPlanar(list, alpha, theta);
       list.push_back({"(23)", "integral over [0, 1] of what is called a density", of, p.lobeNormalization});
     }
   return list;

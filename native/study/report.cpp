@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "study/gnuplot.h"
 
@@ -15,7 +17,18 @@ namespace {
 using nlohmann::json;
 size_t at(int i) { return static_cast<size_t>(i); }
 
-constexpr double kNormal95 = 1.959963984540054;
+// The 95 % interval of a variance from K trials: that of chi-square with as many degrees of freedom as their kurtosis
+// leaves, 2 s^4/Var(s^2), and never more than the K - 1 of a normal distribution, since few trials show no tails. None
+// under 4 trials.
+std::pair<double, double> varianceInterval(const Estimate& e) {
+  const double nan = std::nan(""), s2 = e.variance();
+  if (e.count() < 4) return {nan, nan};
+  if (!(s2 > 0)) return {0, 0};
+  const double relative = e.varianceError() / s2;
+  const boost::math::chi_squared distribution(std::clamp(2 / (relative * relative), 1.0, e.count() - 1));
+  const double degrees = distribution.degrees_of_freedom();
+  return {s2 * degrees / quantile(distribution, 0.975), s2 * degrees / quantile(distribution, 0.025)};
+}
 
 // What is derived of a run; NaN where it does not apply.
 struct Derived {
@@ -29,8 +42,7 @@ Derived derive(const Study& study, const StrategyRun& run) {
   if (e.count() < 2) return d;
   d.variance = e.variance();
   d.z = e.error() > 0 ? (e.mean() - study.exact.moments.integral) / e.error() : 0;
-  d.low = std::max(0.0, d.variance - kNormal95 * e.varianceError()),
-  d.high = d.variance + kNormal95 * e.varianceError();
+  std::tie(d.low, d.high) = varianceInterval(e);
   if (run.predictedVariance && *run.predictedVariance > 0) d.ratio = d.variance / *run.predictedVariance;
   d.varianceCost = d.variance * run.seconds;
   return d;
@@ -118,8 +130,8 @@ std::string studyTable(const Study& s) {
       if (settings.trials > 0) {
         const Derived d = derive(s, run);
         row.insert(row.end(), {number(run.estimate.mean() + s.exact.diffusePart, 6), number(d.z, 2), number(d.variance),
-                               fmt::format("{}..{}", number(d.low, 3), number(d.high, 3)), number(d.ratio),
-                               number(run.seconds * 1e6, 3), number(d.varianceCost, 3)});
+                               std::isfinite(d.low) ? fmt::format("{}..{}", number(d.low, 3), number(d.high, 3)) : "-",
+                               number(d.ratio), number(run.seconds * 1e6, 3), number(d.varianceCost, 3)});
       }
       rows.push_back(row);
     }
@@ -130,6 +142,12 @@ std::string studyTable(const Study& s) {
       "that of the\n"
       "exact fractions, the strategy's goal. 'variance' and 'equal' have the same N Var whatever the case "
       "(docs/theory.md).\n";
+  if (const double error = std::max(s.exact.cutoffError, s.exact.maximumError); error > 1e-6)
+    out += fmt::format(
+        "The weights of cutoff and maximum jump within the quadrature's cells: their N Var has a relative error of "
+        "about "
+        "{:.0e}.\n",
+        error);
   return out;
 }
 
@@ -212,7 +230,8 @@ void plotStudy(const Study& s, const std::string& path) {
       const Derived d = derive(s, run);
       const double n = s.settings[r].samples;
       script += fmt::format("{} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {}\n", n, n * d.variance,
-                            n * std::max(d.low, d.variance * 1e-3), n * d.high, run.seconds, std::sqrt(d.variance),
+                            n * (std::isfinite(d.low) ? d.low : d.variance),
+                            n * (std::isfinite(d.high) ? d.high : d.variance), run.seconds, std::sqrt(d.variance),
                             run.predictedVariance ? fmt::format("{:.9g}", n * *run.predictedVariance) : "NaN");
     }
     script += "END\n";

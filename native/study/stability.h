@@ -43,7 +43,7 @@ struct StabilityCell {
   double lightAngle = 0;  // half angle of the cone light, radians; 0: the sky R cos(theta)
   double cosO = -1;       // grazing cells: cos(theta_o) as given; no integral there
   int samples = 64, trials = 400;
-  int sampler = 20000;  // samples of the chi-square test
+  int sampler = 100000;  // samples of the chi-square test
 };
 
 struct StabilityResult {

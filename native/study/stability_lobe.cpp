@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/stability_lobe.h"
 
+#include <Eigen/Dense>
 #include <boost/math/distributions/chi_squared.hpp>
 
 #include "study/cubature.h"
@@ -77,6 +78,39 @@ void integrateLobe(const WardFunctions<Extended>& tested, const StudyInput& inpu
   report.below = problem.outside(0);
 }
 
+namespace {
+
+double chiSquareLevel(double statistic, int degrees) {
+  // NaN from a broken density must not pass
+  if (!(statistic >= 0) || std::isinf(statistic)) return 0;
+  return boost::math::cdf(boost::math::complement(boost::math::chi_squared(std::max(1, degrees)), statistic));
+}
+
+// Means of smooth functions of (1 - e^-E, psi) over the samples above the horizon: a sampler that is a little too wide,
+// too long or turned shifts them in every cell a little, which the many cells of the histogram do not show.
+constexpr int kFeatures = 6;
+using Features = Eigen::Matrix<double, kFeatures, 1>;
+Features featuresAt(double w, double psi) {
+  return Features{1, w, std::cos(psi), std::sin(psi), std::cos(2 * psi), std::sin(2 * psi)};
+}
+
+// Hotelling's statistic of the mean, whose expectation and covariance the density gives.
+double levelOfMeans(const Features& sum, const Features& expected,
+                    const Eigen::Matrix<double, kFeatures, kFeatures>& second, int count) {
+  const Features off = sum / count - expected;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, kFeatures, kFeatures>> axes(
+      second - expected * expected.transpose());
+  double statistic = 0;
+  int degrees = 0;
+  for (int k = 0; k < kFeatures; ++k) {
+    if (!(axes.eigenvalues()[k] * count > 5)) continue;  // a share of samples too small to be normal, or none
+    statistic += count * square(axes.eigenvectors().col(k).dot(off)) / axes.eigenvalues()[k], ++degrees;
+  }
+  return chiSquareLevel(statistic, degrees);
+}
+
+}  // namespace
+
 template <class T>
 double chiSquareOfLobe(const WardFunctions<T>& tested, const WardFunctions<Extended>& density, const StudyInput& input,
                        int count, Stream random, double& largestWeight) {
@@ -88,6 +122,8 @@ double chiSquareOfLobe(const WardFunctions<T>& tested, const WardFunctions<Exten
   const WardVariant variant = wardVariant(input.brdf);
   std::vector<double> observed(kSide * kSide, 0), expected(kSide * kSide, 0);
   double observedBelow = 0;
+  Features seen = Features::Zero(), mean = Features::Zero();
+  Eigen::Matrix<double, kFeatures, kFeatures> second = Eigen::Matrix<double, kFeatures, kFeatures>::Zero();
   for (int i = 0; i < count; ++i) {
     const double u = std::floor(random.uniform() * 0x1p24) * 0x1p-24,
                  v = std::floor(random.uniform() * 0x1p24) * 0x1p-24;
@@ -102,6 +138,7 @@ double chiSquareOfLobe(const WardFunctions<T>& tested, const WardFunctions<Exten
     const double y = double((Extended(wi.y) + Extended(wo.y)) / hz / input.alphaY);
     const double e = -std::expm1(-(x * x + y * y)), psi = std::atan2(y, x) / turn;
     const auto cell = [](double c) { return std::min(kSide - 1, static_cast<size_t>(c * kSide)); };
+    seen += featuresAt(e, turn * psi);
     ++observed[cell(psi < 0 ? psi + 1 : psi) * kSide + cell(e)];
   }
   // The density per cell, with 1 - e^-E from 0 to where the horizon is: three Gauss nodes.
@@ -121,7 +158,9 @@ double chiSquareOfLobe(const WardFunctions<T>& tested, const WardFunctions<Exten
           double perSlope = 0;
           const Vec3<Extended> wi = directionAt(disk, input, ring, r, psi, std::max(0.0, ring.rMax - r), perSlope);
           const Extended pdf = density.evaluate(variant, wi, extendedWo(disk), input.alphaX, input.alphaY).pdf;
-          mass += kWeights[k] * double(pdf) * perSlope / (2 * (1 - w));  // r dr = d(1 - e^-E)/(2 e^-E)
+          const double part = kWeights[k] * double(pdf) * perSlope / (2 * (1 - w));  // r dr = d(1 - e^-E)/(2 e^-E)
+          const Features h = featuresAt(w, psi) * (part * (to - from) * turn / kSide / kNodes);
+          mass += part, mean += h, second += h * featuresAt(w, psi).transpose();
         }
         mass *= (to - from) * turn / kSide / kNodes;
         expected[row * kSide + column] += mass, above += mass;
@@ -141,9 +180,7 @@ double chiSquareOfLobe(const WardFunctions<T>& tested, const WardFunctions<Exten
     statistic += square(observedBelow - pooled) / pooled, ++cells;
   else if (observedBelow > pooled + 30)
     return 0;
-  // NaN from a broken density must not pass
-  if (!(statistic >= 0) || std::isinf(statistic)) return 0;
-  return boost::math::cdf(boost::math::complement(boost::math::chi_squared(std::max(1, cells - 1)), statistic));
+  return std::min(1.0, 2 * std::min(chiSquareLevel(statistic, cells - 1), levelOfMeans(seen, mean, second, count)));
 }
 
 template double chiSquareOfLobe(const WardFunctions<float>&, const WardFunctions<Extended>&, const StudyInput&, int,

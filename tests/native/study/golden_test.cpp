@@ -78,6 +78,37 @@ TEST(Exact, OptimalWeightsUseATechniqueWithNextToNoSamples) {
   EXPECT_NEAR(ours["NVar"]["optimal weights inv_m2"].get<double>(), 0.18336300, 1e-7);
 }
 
+// Weights that jump. Planar: cells end at the jumps. Values: numpy, composite Gauss-Legendre between the bisected
+// jumps. Full: the jumps are lines through the cells, and the error's estimate says what that costs (value: by 2304 x
+// 2304 nodes, itself right to 3e-4).
+TEST(Exact, JumpingWeights) {
+  struct Case {
+    const char* model;
+    double alpha, theta, maximum, cutoff, scale;
+  };
+  for (const Case& c : {Case{"ward-gmd", 0.08, 23, 13.469377028, 18.931943197, 1},
+                        Case{"ward", 0.17, 47, 55.797596695, 15.892197508550, 0.7 * 2.5},
+                        Case{"ward-dur", 0.33, 71, 16.309002719, 4.6006529889, 1}}) {
+    SCOPED_TRACE(c.model);
+    StudyInput input;
+    input.mode = StudyMode::kPlanar, input.alphaX = input.alphaY = c.alpha, input.thetaO = c.theta;
+    input.brdf = c.model == std::string("ward")       ? StudyBrdf::kWard
+                 : c.model == std::string("ward-dur") ? StudyBrdf::kWardDur
+                                                      : StudyBrdf::kWardGmd;
+    if (c.scale != 1) input.rhoS = 0.7, input.R = 2.5;
+    const json v = expectJson(input, solve(*makeProblem(input)))["NVar"];
+    EXPECT_NEAR(v["maximum equal"].get<double>() / c.maximum, 1, 1e-8);
+    EXPECT_NEAR(v["cutoff equal"].get<double>() / c.cutoff, 1, 1e-8);
+    EXPECT_LT(v["maximum equal_relerr"].get<double>(), 1e-6);
+  }
+  StudyInput full;
+  full.brdf = StudyBrdf::kWardGmd, full.alphaX = full.alphaY = 0.35, full.thetaO = 40;
+  const json v = expectJson(full, solve(*makeProblem(full)))["NVar"];
+  const double error = v["maximum equal_relerr"].get<double>();
+  EXPECT_NEAR(v["maximum equal"].get<double>() / 0.3735, 1, error + 3e-4);
+  EXPECT_LT(error, 0.01);
+}
+
 // Weights that do not know the counts need samples of every technique: without a share, the variance is infinite.
 TEST(Exact, NonbalanceWithoutAShareIsInfinite) {
   StudyInput input;

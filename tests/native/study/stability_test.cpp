@@ -158,6 +158,28 @@ TEST(StabilityDefects, SamplerOfAnotherLobe) {
   EXPECT_EQ(failures(ordinary(), subject), Names{"chi-square"});
 }
 
+// A sampler whose slopes are 3 % too long along x, which moves no cell of a histogram much: seen nearly everywhere.
+TEST(StabilityDefects, SamplerThatIsALittleTooWide) {
+  WardFunctions<double> wide = WardFunctions<double>::own();
+  wide.sample = [](auto wo, double ax, double ay, auto u) { return wardSample(wo, 1.03 * ax, ay, u); };
+  int cells = 0, seen = 0, alarms = 0;
+  for (double alpha : {1e-4, 0.01, 0.1, 0.3, 1.0})
+    for (double theta : {0.0, 30.0, 60.0, 80.0, 89.0}) {
+      const StabilityCell c = cell(StabilityAxis::kGrid, StudyBrdf::kWard, alpha, theta);
+      const auto level = [&](const WardFunctions<double>& tested) {
+        double weight = 0;
+        return chiSquareOfLobe(tested, WardFunctions<long double>::own(), c.input, c.sampler,
+                               Stream(1, uint64_t(cells)), weight);
+      };
+      seen += level(wide) < 1e-6 ? 1 : 0;
+      alarms += level(WardFunctions<double>::own()) < 1e-3 ? 1 : 0;
+      ++cells;
+    }
+  EXPECT_EQ(cells, 25);
+  EXPECT_GE(seen, 22);
+  EXPECT_EQ(alarms, 0);
+}
+
 TEST(StabilityDefects, WeightAboveItsLimit) {
   StabilitySubject subject;
   subject.single.weight = [](WardVariant v, Vec3f wi, Vec3f wo) { return 2 * wardWeight<float>(v, wi, wo); };
