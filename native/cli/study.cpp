@@ -146,9 +146,10 @@ int run(Options& o) {
   study.exact = solve(*problem);
   study.costNanoseconds = measureCost(*problem);
   const std::optional<Densities> cost = costs(o.cost, study.costNanoseconds, problem->techniques());
+  const std::vector<Prediction> predictions = predictAll(list, study.exact, cost ? &*cost : nullptr);
   for (int n : counts) {
     study.settings.push_back({n, o.trials, o.seed, cost, study.costNanoseconds, o.threads});
-    study.runs.push_back(runTrials(*problem, study.exact, list, study.settings.back()));
+    study.runs.push_back(runTrials(*problem, study.exact, list, study.settings.back(), &predictions));
   }
   study.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!o.csv.empty()) writeFile(o.csv, studyCsv(study));

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "study/cubature.h"
@@ -180,6 +181,17 @@ Prediction predict(const Strategy& s, const Exact& e, const Densities* cost) {
   p.fractions = fractions(s.allocation, e.points, e.moments, cost);
   p.logVariance = logVariance(s.weights, p.fractions, e.points, e.moments);
   return p;
+}
+
+std::vector<Prediction> predictAll(const std::vector<const Strategy*>& list, const Exact& e, const Densities* cost) {
+  std::vector<Prediction> all;
+  std::map<Allocation, Densities> known;
+  for (const Strategy* s : list) {
+    const Allocation rule = s->allocation == Allocation::kAuto ? Allocation::kBest : s->allocation;  // the same goal
+    if (!known.contains(rule)) known[rule] = fractions(rule, e.points, e.moments, cost);
+    all.push_back({known[rule], logVariance(s->weights, known[rule], e.points, e.moments)});
+  }
+  return all;
 }
 
 json expectJson(const StudyInput& input, const Exact& e, int samples) {

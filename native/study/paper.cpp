@@ -177,7 +177,7 @@ void plotVerdicts(const std::vector<Verdict>& list, const std::string& path) {
       "set multiplot title 'Variance over that of equal counts (Def. 7): below 1 is better' noenhanced\nset logscale "
       "xy\n"
       "set grid lc rgb '#dddddd'\nset border lc rgb '#666666'\nset tics font ',9'\nset xlabel 'alpha'\n"
-      "set format y '10^{%T}'\nset xrange [0.01:1]\nset yrange [1e-5:1e4]\n";
+      "set format y '10^{%T}'\nset xrange [0.01:1]\nset yrange [1e-5:1e5]\n";
   int panel = 0;
   for (bool joint : {false, true})
     for (double theta : {0.0, 60.0}) {

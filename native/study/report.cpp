@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -240,28 +241,46 @@ void plotStudy(const Study& s, const std::string& path) {
       "set multiplot title {} noenhanced\nset logscale xy\nset format y '10^{{%T}}'\nset grid lc rgb '#dddddd'\n"
       "set tmargin 3\nset border lc rgb '#666666'\nset tics font ',9'\n",
       gnuplotText(title(s.input)));
-  // a colour and a point of its own each; the ones that the paper compares first and thick
-  static constexpr const char* kColours[] = {"#000000", "#d62728", "#ff9896", "#1f77b4", "#aec7e8", "#2ca02c",
-                                             "#98df8a", "#9467bd", "#8c564b", "#c49c94", "#e377c2", "#7f7f7f",
-                                             "#bcbd22", "#17becf", "#9edae5", "#393b79", "#637939", "#8c6d31",
-                                             "#843c39", "#7b4173", "#3182bd", "#e6550d"};
-  const auto line = [&](size_t k) {
-    return fmt::format("lc rgb '{}' lw {}", kColours[k % std::size(kColours)], k < 3 ? "1.8" : "1.2");
+  // A colour and a point of its own each, the ones that the paper compares thick. Of many, the others than these and
+  // the yardsticks are thin and grey: to show some of them, name them by --strategies.
+  static constexpr const char* kColours[] = {"#000000", "#d62728", "#1f77b4", "#2ca02c", "#9467bd",
+                                             "#e6550d", "#17becf", "#8c564b", "#e377c2", "#bcbd22"};
+  constexpr std::string_view kPapers[] = {"equal", "variance", "second-moment"};
+  constexpr std::string_view kShown[] = {"equal", "variance", "second-moment", "standard-deviation",
+                                         "best",  "optimal",  "auto"};
+  const auto isOne = [&](const auto& names, size_t k) {
+    return std::find(std::begin(names), std::end(names), s.runs[0][k].strategy->name) != std::end(names);
   };
-  const auto style = [&](size_t k) { return fmt::format("{} pt {} ps 0.7", line(k), 1 + k % 13); };
+  std::vector<size_t> colours;  // by strategy; none of them: grey
+  for (size_t k = 0, next = 0; k < strategies; ++k)
+    colours.push_back(strategies <= std::size(kColours) || isOne(kShown, k) ? next++ : std::size(kColours));
+  const auto shown = [&](size_t k) { return colours[k] < std::size(kColours); };
+  const auto line = [&](size_t k) {
+    if (!shown(k)) return std::string("lc rgb '#c8c8c8' lw 0.6");
+    return fmt::format("lc rgb '{}' lw {}", kColours[colours[k]], isOne(kPapers, k) ? "1.8" : "1.2");
+  };
+  const auto style = [&](size_t k) { return fmt::format("{} pt {} ps {}", line(k), 1 + k % 13, shown(k) ? 0.7 : 0.3); };
+  std::vector<size_t> order;  // the grey ones first, beneath
+  for (bool wanted : {false, true})
+    for (size_t k = 0; k < strategies; ++k)
+      if (shown(k) == wanted) order.push_back(k);
   script +=
       "set origin 0,0\nset size 0.42,0.95\nset key off noenhanced\nset xlabel 'samples N'\nset ylabel 'N x variance "
       "(bars: 95 %; lines: exact)'\nplot ";
-  for (size_t k = 0; k < strategies; ++k)
+  for (size_t k : order)
     script += fmt::format("{0}$s{1} using 1:7 with lines {3} notitle, $s{1} using 1:2:3:4 with yerrorbars {2} notitle",
-                          k > 0 ? ", " : "", k, style(k), line(k));
+                          k != order[0] ? ", " : "", k, style(k), line(k));
   script +=
       "\nset origin 0.42,0\nset size 0.58,0.95\nset key outside right top font ',9' noenhanced\n"
       "set xlabel 'seconds of one estimate (drawing and combining)'\nset format x '10^{%T}'\n"
       "set ylabel 'standard deviation of the estimate'\nplot ";
-  for (size_t k = 0; k < strategies; ++k)
-    script += fmt::format("{}$s{} using 5:6 with linespoints {} title {}", k > 0 ? ", " : "", k, style(k),
-                          gnuplotText(std::string(s.runs[0][k].strategy->name)));
+  const auto named = [&](size_t k) {
+    return shown(k) ? "title " + gnuplotText(std::string(s.runs[0][k].strategy->name)) : std::string("notitle");
+  };
+  for (size_t k : order)
+    script += fmt::format("{}$s{} using 5:6 with linespoints {} {}", k != order[0] ? ", " : "", k, style(k), named(k));
+  if (std::any_of(order.begin(), order.end(), [&](size_t k) { return !shown(k); }))
+    script += ", NaN with lines lc rgb '#c8c8c8' title 'the others'";
   script += "\nunset multiplot\n";
   drawWithGnuplot(path, 1280, 560, script);
 }

@@ -203,7 +203,8 @@ Densities measureCost(const Problem& problem) {
 }
 
 std::vector<StrategyRun> runTrials(const Problem& problem, const Exact& exact,
-                                   const std::vector<const Strategy*>& strategies, const TrialSettings& settings) {
+                                   const std::vector<const Strategy*>& strategies, const TrialSettings& settings,
+                                   const std::vector<Prediction>* predictions) {
   const int n = problem.techniques(), samples = settings.samples;
   if (samples < n)
     throw Error(ExitCode::kUsage, fmt::format("{} samples for {} techniques", samples, n),
@@ -213,10 +214,13 @@ std::vector<StrategyRun> runTrials(const Problem& problem, const Exact& exact,
   std::vector<StrategyRun> runs;
   std::vector<Densities> taus;
   Counts needed{};
+  const std::vector<Prediction> own =
+      predictions == nullptr ? predictAll(strategies, exact, cost) : std::vector<Prediction>();
+  const std::vector<Prediction>& predicted = predictions == nullptr ? own : *predictions;
   for (const Strategy* s : strategies) {
     StrategyRun run;
     run.strategy = s;
-    run.exact = predict(*s, exact, cost);
+    run.exact = predicted[runs.size()];
     run.counts = wholeCounts(run.exact.fractions, n, samples);
     Densities actual{};
     for (int k = 0; k < n; ++k) actual[at(k)] = double(run.counts[at(k)]) / samples;
@@ -225,8 +229,8 @@ std::vector<StrategyRun> runTrials(const Problem& problem, const Exact& exact,
     taus.push_back(s->weights == Weights::kOptimal && s->knowledge == Knowledge::kGiven
                        ? optimalTau(exact.points, actual)
                        : Densities{});
-    const bool own = s->knowledge == Knowledge::kProgressive || s->knowledge == Knowledge::kPilot;
-    for (int k = 0; k < n; ++k) needed[at(k)] = std::max(needed[at(k)], own ? samples : run.counts[at(k)]);
+    const bool learns = s->knowledge == Knowledge::kProgressive || s->knowledge == Knowledge::kPilot;
+    for (int k = 0; k < n; ++k) needed[at(k)] = std::max(needed[at(k)], learns ? samples : run.counts[at(k)]);
     runs.push_back(run);
   }
 

@@ -31,8 +31,10 @@ struct StrategyRun {
 Densities measureCost(const Problem& problem);
 
 // Throws Error(usage) where there are fewer samples than techniques. The samples of a trial are shared: each strategy
-// takes the first ones of every technique, so that strategies are compared on the same luck.
+// takes the first ones of every technique, so that strategies are compared on the same luck. `predictions`:
+// predictAll's for the same strategies and costs, which do not depend on the number of samples; null: made here.
 std::vector<StrategyRun> runTrials(const Problem& problem, const Exact& exact,
-                                   const std::vector<const Strategy*>& strategies, const TrialSettings& settings);
+                                   const std::vector<const Strategy*>& strategies, const TrialSettings& settings,
+                                   const std::vector<Prediction>* predictions = nullptr);
 
 }  // namespace wardmis

@@ -130,7 +130,7 @@ class Study(CommandTest):
 
     def test_intervals_of_few_trials(self):
         """None under four trials; from there on as often right as they say: of 24 of 95 %, 18 or less come by chance
-        once in 10^4 times."""
+        once in 1000 times."""
         covered = 0
         for seed in range(24):
             run = self.study("--alpha", "0.3", "--theta-o", "30", "--samples", "64", "--trials", "5",
