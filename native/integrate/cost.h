@@ -14,9 +14,10 @@ struct TechniqueCost {
   Fractions perSample{1, 1, 1};  // the latter relative to their mean; 1 where nothing was measured
 };
 
-// Renders a few camera samples, which are thrown away, with the counts moved towards each technique in turn, and solves
-// for the costs by least squares: for every 50 of settings.spp one round of up to four samples per pixel, the first
-// round always, the others for at most half a second.
+// Renders camera samples, which are thrown away, with the counts moved towards each technique in turn, and solves for
+// the costs by least squares. A pass to warm up, then rounds of up to four samples per pixel: one for every 50 of
+// settings.spp, at least three, more than these for at most half a second. A machine that does other things makes them
+// unsure.
 TechniqueCost measureCost(const BuiltScene& built, const RenderSettings& settings);
 
 }  // namespace wardmis

@@ -79,18 +79,29 @@ TEST(Render, CheckpointsSeeTheFilmAtPowersOfTwoAndDoNotCount) {
 }
 
 TEST(Render, MeasuresWhatASampleCosts) {
-  const Scene scene = mixedScene(64);
+  const Scene scene = mixedScene(160);  // passes long enough for the clock
   RenderSettings s = quick();
-  s.spp = 400;
+  s.spp = 600;
   const BuiltScene built(scene, s.threads);
   const TechniqueCost cost = measureCost(built, s);
-  double sum = 0;
+  // how much of it is whose depends on what else the machine does; that the parts make up the whole does not
+  double sum = 0, seconds = cost.cameraSample;
   for (size_t t = 0; t < kTechniques; ++t) {
-    EXPECT_GT(cost.sample[t], 0) << t;
-    EXPECT_LT(cost.sample[t], 1e-3) << t;
+    EXPECT_GE(cost.sample[t], 0) << t;
+    EXPECT_GE(cost.perSample[t], 0.09f) << t;
     sum += double(cost.perSample[t]);
   }
-  EXPECT_NEAR(sum, kTechniques, 1e-3);
+  EXPECT_GT(cost.sample[0] + cost.sample[1] + cost.sample[2] + cost.cameraSample, 0);
+  EXPECT_GT(sum, 1);
+  Statistics statistics;
+  s.spp = 64;
+  render(built, s, statistics);
+  for (size_t t = 0; t < kTechniques; ++t)
+    seconds += cost.sample[t] * double(statistics.counts.samples[t]) / double(statistics.counts.cameraRays);
+  const double measured =
+      (statistics.pilotCpuSeconds + statistics.renderCpuSeconds) / double(statistics.counts.cameraRays);
+  EXPECT_GT(seconds, measured / 3);
+  EXPECT_LT(seconds, measured * 3);
   Scene dark = mixedScene();
   dark.lights.clear();
   dark.materials[2].emission.value = {0, 0, 0};
