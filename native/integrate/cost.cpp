@@ -71,10 +71,7 @@ TechniqueCost measureCost(const BuiltScene& built, const RenderSettings& setting
       const size_t turn = round % 2 == 0 ? k : turns.size() - 1 - k;  // ABCCBA
       const auto row = pass(round, turns[turn]);
       // of several rounds the quickest: what comes on top is what else the machine does
-      if (round == 0)
-        rows[turn] = row;
-      else if (row[0] / row[1] < rows[turn][0] / rows[turn][1])
-        rows[turn] = row;
+      if (round == 0 || row[0] / row[1] < rows[turn][0] / rows[turn][1]) rows[turn] = row;
     }
 
   std::vector<int> unknowns{0};  // column of each
