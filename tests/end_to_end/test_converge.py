@@ -497,10 +497,9 @@ class Converge(CommandTest):
         self.assertAlmostEqual(shares["lobe"] + shares["cosine"] + shares["light"], 1, places=6)
         self.assertIsNone(shares["clamped"])
         self.assertEqual(shares["starved"], 0)
-        for technique in report["techniques"]:
-            self.assertAlmostEqual(
-                technique["variance_x_cost"] / (technique["variance"] * technique["ns_per_sample"]), 1, places=9
-            )
+        for technique in report["techniques"]:  # a cost may be measured as 0 on a busy machine
+            product = technique["variance"] * technique["ns_per_sample"]
+            self.assertAlmostEqual(technique["variance_x_cost"], product, delta=1e-9 * product)
         wins = self.of(report, "sooner")["wins"]
         self.assertGreater(wins["better"], 0.5)
         self.assertEqual(wins["worse"], 0)
