@@ -39,6 +39,7 @@ struct Measured {
   std::vector<float> predicted;                           // per pixel: variance that the runs claim; empty: unknown
   std::array<std::vector<float>, kTechniques> fractions;  // per pixel; empty where the technique is not there
   RgbImage first;                                         // of the first seed
+  std::vector<uint8_t> wins;  // against the baseline, see Reporter::wins; empty: not compared
 
   double cpu(size_t run) const {
     const Checkpoint& last = (*runs)[run].checkpoints.back();
@@ -150,6 +151,8 @@ class Reporter {
     commonSeeds_ = base_->runs->size();
     for (const Measured& m : measured_) commonSeeds_ = std::min(commonSeeds_, m.runs->size());
     choose();
+    for (Measured& m : measured_)
+      if (&m != base_ && !(m.configuration->external && !m.configuration->common)) m.wins = wins(m);
   }
 
   Analysis run() {
@@ -626,12 +629,11 @@ class Reporter {
         description += (description.empty() ? "" : ", ") + key + " " +
                        (value.is_string() ? value.get<std::string>() : value.dump());
     json wins;
-    if (&m != base_ && !(c.external && !c.common)) {
-      const std::vector<uint8_t> map = this->wins(m);
-      const double n = double(map.size());
-      wins = {{"better", double(std::count(map.begin(), map.end(), 0)) / n},
-              {"worse", double(std::count(map.begin(), map.end(), 1)) / n},
-              {"undecided", double(std::count(map.begin(), map.end(), 2)) / n}};
+    if (!m.wins.empty()) {
+      const auto share = [&](uint8_t outcome) {
+        return double(std::count(m.wins.begin(), m.wins.end(), outcome)) / double(m.wins.size());
+      };
+      wins = {{"better", share(0)}, {"worse", share(1)}, {"undecided", share(2)}};
     }
     return {{"name", c.name},
             {"renderer", c.renderer},
@@ -832,14 +834,14 @@ class Reporter {
                           shares, w, h));
     }
     for (const Measured& m : measured_) {
+      if (m.wins.empty()) continue;
       const Configuration& c = *m.configuration;
-      if (&m == base_ || (c.external && !c.common)) continue;
       all.push_back(classesPicture(
           {c.name + "/wins", c.name + " or " + base_->configuration->name, "map", c.name,
            fmt::format("Where relMSE × CPU time is less than with {}: blocks of {} × {} pixels, paired t-tests "
                        "over the seeds, false discoveries at most 5 %.",
                        base_->configuration->name, kWinBlock, kWinBlock)},
-          wins(m), w, h,
+          m.wins, w, h,
           {{c.name + " is better", "#0072B2"},
            {base_->configuration->name + " is better", "#D55E00"},
            {"undecided", "#999999"}}));
