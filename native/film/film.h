@@ -16,6 +16,7 @@ struct Pixel {
   float depth = 1e10f;  // planar, of the first sample
   Vec3f normal{0, 0, 0};
   Rgb albedo{0, 0, 0};
+  uint32_t visits = 0;                   // first hits whose counts follow the pixel's fractions
   std::array<uint32_t, 3> techniques{};  // samples that each technique took at first hits
 
   void add(Rgb v) {

@@ -111,7 +111,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
   const Mixture mixture(plan.fractions, plan.samples, plan.weights);
   const uint32_t dimension = plan.vertex * kPerVertex;
   const std::array<int, kTechniques> n = systematicCounts(
-      plan.fractions, plan.samples, sampler.get1D(plan.pixelKey, dimension + kSampleCounts, plan.index));
+      plan.fractions, plan.samples, sampler.spread1D(plan.pixelKey, dimension + kSampleCounts, plan.index));
   const Vec3f woFloat = x.frame.toLocal(x.wo);
   const Vec3<T> wo{T(woFloat.x), T(woFloat.y), T(woFloat.z)};
 

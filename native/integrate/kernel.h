@@ -13,8 +13,8 @@ struct KernelInput {
   const CameraRays& camera;
   const PixelFilter& filter;
   const Sampler& sampler;
-  const std::vector<Fractions>* perPixel;  // null: `fractions` everywhere
-  Fractions fractions;                     // of a hit, before it is restricted to what the surface has
+  const std::vector<PixelFractions>* perPixel;  // null: `fractions` everywhere
+  Fractions fractions;                          // of a hit, before it is restricted to what the surface has
   Allocation rule;
   Integrand integrand;
   Weights weights;

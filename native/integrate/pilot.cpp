@@ -6,8 +6,7 @@
 namespace wardmis {
 
 std::pair<HitMoments, CandidateSums> Pilot::smoothed(int x, int y) const {
-  constexpr int kRadius = 3;         // 7 x 7 pixels
-  constexpr float kSameFace = 0.9f;  // cos of the largest turn of the normal that still is "the same surface"
+  constexpr int kRadius = 3;  // 7 x 7 pixels
   const PilotPixel& center = pixels[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)];
   HitMoments m;
   CandidateSums sums;
@@ -15,8 +14,7 @@ std::pair<HitMoments, CandidateSums> Pilot::smoothed(int x, int y) const {
     for (int u = std::max(0, x - kRadius); u <= std::min(width - 1, x + kRadius); ++u) {
       const size_t neighbour = static_cast<size_t>(v) * static_cast<size_t>(width) + static_cast<size_t>(u);
       const PilotPixel& q = pixels[neighbour];
-      if (q.material != center.material || q.placement != center.placement || dot(q.normal, center.normal) < kSameFace)
-        continue;
+      if (!center.surface.holds(q.surface)) continue;
       m.specular += q.moments.specular;
       m.diffuse += q.moments.diffuse;
       if (!candidates.empty()) sums += candidates[neighbour];
@@ -24,15 +22,16 @@ std::pair<HitMoments, CandidateSums> Pilot::smoothed(int x, int y) const {
   return {m, sums};
 }
 
-std::vector<Fractions> Pilot::fractions(Allocation rule, Integrand integrand, TechniqueMask available, float minimum,
-                                        const Fractions& cost) const {
-  std::vector<Fractions> result(pixels.size());
+std::vector<PixelFractions> Pilot::fractions(Allocation rule, Integrand integrand, TechniqueMask available,
+                                             float minimum, const Fractions& cost) const {
+  std::vector<PixelFractions> result(pixels.size());
   tbb::parallel_for(0, height, [&](int y) {
     for (int x = 0; x < width; ++x) {
       const auto [m, sums] = smoothed(x, y);
-      Fractions& a = result[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)];
-      const TechniqueMask mask =
-          available & pixels[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)].techniques;
+      const size_t index = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
+      const TechniqueMask mask = available & pixels[index].techniques;
+      auto& [surface, a] = result[index];
+      surface = pixels[index].surface;
       if (rule == Allocation::kAuto) {
         a = chooseCandidate(sums, mask, cost);
         continue;

@@ -9,12 +9,30 @@
 
 namespace wardmis {
 
-struct PilotPixel {
-  HitMoments moments;
+// A face of an object, as far as one allocation can serve all of it.
+struct PixelSurface {
   Vec3f normal{0, 0, 0};
-  int material = -1;
+  int material = -1;  // none: no surface
   uint32_t placement = ~0u;
+
+  bool holds(const PixelSurface& b) const {
+    constexpr float kSameFace = 0.9f;  // cos of the largest turn of the normal
+    return material == b.material && placement == b.placement && dot(normal, b.normal) >= kSameFace;
+  }
+};
+
+// surface: that of the pixel's first hit. Hits of other ones, beyond an edge, have no part in the moments: they would
+// set the counts of a whole neighbourhood by a light that it does not get.
+struct PilotPixel {
+  PixelSurface surface;
   TechniqueMask techniques = kAllTechniques;  // that this surface has
+  HitMoments moments;
+};
+
+// What the pilot found for a pixel's own surface. A hit of another one takes equal counts.
+struct PixelFractions {
+  PixelSurface surface;
+  Fractions fractions{};
 };
 
 struct Pilot {
@@ -30,8 +48,8 @@ struct Pilot {
   std::pair<HitMoments, CandidateSums> smoothed(int x, int y) const;
 
   // Fractions per pixel of the techniques that the scene has (`available`).
-  std::vector<Fractions> fractions(Allocation rule, Integrand integrand, TechniqueMask available, float minimum,
-                                   const Fractions& cost) const;
+  std::vector<PixelFractions> fractions(Allocation rule, Integrand integrand, TechniqueMask available, float minimum,
+                                        const Fractions& cost) const;
 };
 
 }  // namespace wardmis

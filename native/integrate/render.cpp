@@ -149,7 +149,7 @@ FilmBuffer renderInArena(const BuiltScene& built, const RenderSettings& settings
   Run run(settings, observer, setup, buffer);
   if (observer.started) observer.started(stats);
   stats.cost = settings.cost;
-  std::vector<Fractions> perPixel;
+  std::vector<PixelFractions> perPixel;
   if (stats.allocated) {
     if (settings.measureCost) setup.input.cost = stats.cost = measureCost(built, settings).perSample;
     Pilot pilot(buffer.width, buffer.height, settings.allocation);

@@ -44,10 +44,10 @@ Survey survey(const BuiltScene& built, const RenderSettings& settings, uint32_t 
         const PilotPixel& p = pilot.pixels[from];
         SurveyPixel& to = result.pixels[static_cast<size_t>(film.height - 1 - y) * static_cast<size_t>(film.width) +
                                         static_cast<size_t>(x)];
-        if (p.material < 0) continue;
+        if (p.surface.material < 0) continue;
         const HitMoments m = pilot.smoothed(x, y).first;
         const TechniqueMask mask = setup.techniques & p.techniques;
-        to = {p.material, mask, p.placement,
+        to = {p.surface.material, mask, p.surface.placement,
               joint ? ratioOf(m.specular, mask)
                     : std::max(ratioOf(m.specular, mask & kSpecularTechniques),
                                ratioOf(m.diffuse, mask & kDiffuseTechniques))};

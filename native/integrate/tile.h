@@ -2,6 +2,8 @@
 // Definition of the tile kernel; included by kernels.cpp alone.
 #pragma once
 
+#include <bit>
+
 #include "integrate/kernel.h"
 #include "integrate/path.h"
 
@@ -10,7 +12,7 @@ namespace wardmis {
 // Radiance along one camera ray.
 template <uint32_t N>
 Rgb cameraSample(const KernelInput& in, const Ray& ray, uint32_t pixelKey, uint32_t sample,
-                 const Fractions* pixelFractions, Pixel& pixel, PilotPixel* pilot, CandidateSums* candidates,
+                 const PixelFractions* allocated, Pixel& pixel, PilotPixel* pilot, CandidateSums* candidates,
                  Counts& counts) {
   const RenderScene& world = in.scene;
   ++counts.cameraRays;
@@ -32,27 +34,30 @@ Rgb cameraSample(const KernelInput& in, const Ray& ray, uint32_t pixelKey, uint3
   pixel.normal += x.frame.z;
   pixel.albedo += s.diffuse + s.specular;
   const TechniqueMask mask = techniquesAt(s, in.lights, in.surfaceRays);
-  if (pilot != nullptr && pilot->material < 0) {
-    pilot->material = x.material;
-    pilot->placement = x.placement;
-    pilot->normal = x.frame.z;
-    pilot->techniques = mask;
-  }
+  const PixelSurface surface{x.frame.z, x.material, x.placement};
+  if (pilot != nullptr && pilot->surface.material < 0) pilot->surface = surface, pilot->techniques = mask;
 
   if (mask == 0 || !(s.hasDiffuse() || s.hasSpecular())) return sum;
   HitPlan plan;
-  const Fractions& shares = pixelFractions != nullptr && covers(*pixelFractions, mask) ? *pixelFractions : in.fractions;
-  plan.fractions = restrict(in.rule == Allocation::kAlbedo ? albedoFractions(s) : shares, mask);
+  const PixelSurface* const own = pilot != nullptr       ? &pilot->surface
+                                  : allocated != nullptr ? &allocated->surface
+                                                         : nullptr;
+  const bool follows = own == nullptr || own->holds(surface);
+  const Fractions& shares =
+      allocated != nullptr && follows && covers(allocated->fractions, mask) ? allocated->fractions : in.fractions;
+  plan.index = follows ? pixel.visits++ : sample;
+  // whole numbers over each block of visits 2^k ... 2^(k+1) - 1, over which the sampler spreads u evenly
+  plan.fractions = wholeCounts(restrict(in.rule == Allocation::kAlbedo ? albedoFractions(s) : shares, mask),
+                               in.samplesPerHit, std::bit_floor(plan.index));
   plan.available = mask;
   plan.samples = in.samplesPerHit;
   plan.integrand = in.integrand;
   plan.weights = in.weights;
   plan.pixelKey = pixelKey;
-  plan.index = sample;
   plan.firstPoint = pixel.techniques;
   Continuations more;
   const std::array<uint64_t, kTechniques> before = counts.samples;
-  if (pilot != nullptr) {
+  if (pilot != nullptr && follows) {
     HitRecord record{pilot->moments, candidates, in.cost};
     sum += estimate<N>(world, in.sampler, x, plan, counts, &record, more);
   } else {
@@ -76,7 +81,7 @@ void renderTile(const KernelInput& in, const Tile& tile, FilmBuffer& film, Pilot
       const uint32_t key = in.sampler.pixelKey(static_cast<uint32_t>(px), static_cast<uint32_t>(py));
       const size_t index = static_cast<size_t>(y) * static_cast<size_t>(film.width) + static_cast<size_t>(x);
       Pixel& pixel = film.pixels[index];
-      const Fractions* fractions = in.perPixel != nullptr ? &(*in.perPixel)[index] : nullptr;
+      const PixelFractions* allocated = in.perPixel != nullptr ? &(*in.perPixel)[index] : nullptr;
       CandidateSums* candidates = pilot != nullptr && !pilot->candidates.empty() ? &pilot->candidates[index] : nullptr;
       PilotPixel* pilotPixel = pilot != nullptr ? &pilot->pixels[index] : nullptr;
       for (uint32_t s = tile.firstSample; s < tile.firstSample + tile.samples; ++s) {
@@ -84,7 +89,7 @@ void renderTile(const KernelInput& in, const Tile& tile, FilmBuffer& film, Pilot
         const Vec2f lens = in.camera.needsLens() ? in.sampler.get2D(key, kLensPoint, s) : Vec2f{};
         const Ray ray =
             in.camera.ray(static_cast<float>(px) + 0.5f + offset.x, static_cast<float>(py) + 0.5f + offset.y, lens);
-        const Rgb value = cameraSample<N>(in, ray, key, s, fractions, pixel, pilotPixel, candidates, counts) * exposure;
+        const Rgb value = cameraSample<N>(in, ray, key, s, allocated, pixel, pilotPixel, candidates, counts) * exposure;
         if (counts.rare.admit(value)) pixel.add(value);
       }
     }

@@ -117,15 +117,19 @@ class Sampler {
   }
 
   float get1D(uint32_t pixelKey, uint32_t dimension, uint32_t index) const {
+    if (type_ == SamplerType::kSobol) return spread1D(pixelKey, dimension, index);
     const uint32_t key = combine(pixelKey, dimension);
-    if (type_ == SamplerType::kSobol) {
-      const uint32_t i = reverseBits(owenScrambleReversed(reverseBits(index), key));
-      return toUnit(reverseBits(owenScrambleReversed(i, mix(key ^ 0xa511e9b3u))));
-    }
     const float jitter = toUnit(combine(key, index));
     if (type_ == SamplerType::kIndependent) return jitter;
     const uint32_t cell = permute(index % block_, block_, combine(key ^ 0x02e5be93u, index / block_));
     return inCell(cell, jitter, block_);
+  }
+
+  // Evenly spread over the indices, whatever the sampler: the scrambled van der Corput sequence.
+  static float spread1D(uint32_t pixelKey, uint32_t dimension, uint32_t index) {
+    const uint32_t key = combine(pixelKey, dimension);
+    const uint32_t i = reverseBits(owenScrambleReversed(reverseBits(index), key));
+    return toUnit(reverseBits(owenScrambleReversed(i, mix(key ^ 0xa511e9b3u))));
   }
 
   // A random permutation of 0..n-1, evaluated at i (Kensler 2013, "Correlated multi-jittered sampling", listing 3;

@@ -73,6 +73,24 @@ Fractions allocateSplit(Allocation rule, const Moments& specular, const Moments&
   return restrict(combineSplit(s, d), available);
 }
 
+Fractions wholeCounts(const Fractions& a, int n, uint32_t visits) {
+  constexpr uint32_t kLeast = 4, kMost = 64;
+  visits = std::min(visits, kMost);
+  if (visits < kLeast) return a;
+  const float units = static_cast<float>(n) * static_cast<float>(visits);
+  Fractions counts{};
+  size_t largest = 0;
+  float sum = 0;
+  for (size_t i = 0; i < kTechniques; ++i) {
+    if (a[i] > 0) counts[i] = std::max(1.0f, std::round(a[i] * units));
+    sum += counts[i];
+    if (a[i] > a[largest]) largest = i;
+  }
+  counts[largest] += units - sum;  // at most one unit off the nearest
+  for (float& c : counts) c /= units;
+  return counts;
+}
+
 Fractions restrict(const Fractions& a, TechniqueMask available) {
   Fractions r{};
   float sum = 0;

@@ -64,6 +64,12 @@ inline std::array<int, kTechniques> systematicCounts(const Fractions& a, int n, 
   return counts;
 }
 
+// Fractions rounded so that the counts of `visits` hits of n samples are whole numbers, at least one where there was a
+// share: with u evenly spread over the visits, systematicCounts then gives these very counts. Without it a pixel's
+// total of a technique is off by part of a sample, and where the techniques' means differ more than their samples
+// scatter, that part is the noise. Unchanged where visits are too few to hold the shares (rounding would be coarse).
+Fractions wholeCounts(const Fractions& a, int n, uint32_t visits);
+
 // The weights of one hit, ready for use.
 struct Mixture {
   Fractions n{};       // expected counts n_i
