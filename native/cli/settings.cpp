@@ -34,7 +34,7 @@ Fractions costOf(const std::string& text) {
     good = CLI::detail::lexical_cast(parts[t], cost[t]) && cost[t] >= 1e-3f && cost[t] <= 1e6f;
   if (!good)
     throw Error(ExitCode::kUsage, fmt::format("--cost '{}'", text),
-                "give three numbers from 0.001 to 1e6, as in --cost 1,1,2, or 'measured'");
+                "give three numbers from 0.001 to 1e6, as in --cost 1,1,2, or 'rays' or 'measured'");
   return cost;
 }
 
@@ -66,8 +66,8 @@ void SettingOptions::add(CLI::App& app) {
       ->check(between(0.001, 0.5))
       ->capture_default_str();
   app.add_option("--cost", cost_,
-                 "of a lobe, cosine and light sample, for --allocation auto: three numbers, or 'measured' (the image "
-                 "then depends on the machine)")
+                 "of a lobe, cosine and light sample, for --allocation auto: 'rays', as counted in the pilot; three "
+                 "numbers; or 'measured' (the image then depends on the machine)")
       ->capture_default_str();
   app.add_option("--max-depth", numbers_.maxDepth, "surface hits of a path; 1 is direct light")
       ->check(CLI::Range(1, 1024))
@@ -85,8 +85,8 @@ RenderSettings SettingOptions::chosen() const {
   s.integrator = pick(integrator_, kIntegrators);
   s.sampler = pick(sampler_, kSamplers);
   s.generalKernel = kernel_ == "general";
-  s.measureCost = cost_ == "measured";
-  if (!s.measureCost) s.cost = costOf(cost_);
+  s.costFrom = cost_ == "rays" ? CostFrom::kRays : cost_ == "measured" ? CostFrom::kMeasured : CostFrom::kGiven;
+  if (s.costFrom == CostFrom::kGiven) s.cost = costOf(cost_);
   return s;
 }
 
@@ -123,7 +123,9 @@ nlohmann::json toJson(const RenderSettings& s) {
           {"samples_per_hit", s.samplesPerHit},
           {"pilot_spp", s.pilotSpp},
           {"min_fraction", s.minFraction},
-          {"cost", s.measureCost ? nlohmann::json("measured") : nlohmann::json(s.cost)},
+          {"cost", s.costFrom == CostFrom::kRays       ? nlohmann::json("rays")
+                   : s.costFrom == CostFrom::kMeasured ? nlohmann::json("measured")
+                                                       : nlohmann::json(s.cost)},
           {"max_depth", s.maxDepth},
           {"kernel", s.generalKernel ? "general" : "auto"}};
 }

@@ -37,7 +37,7 @@ class SettingOptions {
  private:
   RenderSettings numbers_;
   std::string allocation_ = "second-moment", weights_ = "auto", integrand_ = "split", integrator_ = "path",
-              sampler_ = "sobol", kernel_ = "auto", cost_ = "1,1,1";
+              sampler_ = "sobol", kernel_ = "auto", cost_ = "rays";
 };
 
 // Without what ends a render.

@@ -98,9 +98,10 @@ TechniqueCost measureCost(const BuiltScene& built, const RenderSettings& setting
   }
   if (found == 0) return cost;
   const double mean = sum / found;
+  cost.perSample.hit = static_cast<float>(cost.cameraSample / (settings.samplesPerHit * mean));
   for (size_t t = 0; t < kTechniques; ++t)  // a cost of nothing is the clock's noise
     if ((setup.techniques >> t & 1u) != 0)
-      cost.perSample[t] = static_cast<float>(std::max(cost.sample[t], 0.1 * mean) / mean);
+      cost.perSample.technique[t] = static_cast<float>(std::max(cost.sample[t], 0.1 * mean) / mean);
   return cost;
 }
 

@@ -11,7 +11,7 @@ struct TechniqueCost {
   // all that follows from it (shadow rays, the path that goes on); 0 for techniques that the scene does not have.
   double cameraSample = 0;
   std::array<double, kTechniques> sample{};
-  Fractions perSample{1, 1, 1};  // the latter relative to their mean; 1 where nothing was measured
+  SampleCost perSample;  // relative to the mean of the techniques; 1 where nothing was measured
 };
 
 // Renders camera samples, which are thrown away, with the counts moved towards each technique in turn, and solves for

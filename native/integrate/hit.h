@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <new>
-#include <optional>
 
 #include "integrate/interaction.h"
 #include "math/check.h"
@@ -19,12 +18,14 @@ inline constexpr int kMaxSamplesPerHit = 256;
 
 // What a render counts.
 struct Counts {
-  std::array<uint64_t, kTechniques> samples{};  // at the first hit
+  std::array<uint64_t, kTechniques> samples{};    // at the first hit
+  std::array<uint64_t, kTechniques> following{};  // rays of the paths that went on from samples of each technique
   uint64_t cameraRays = 0, lobeRays = 0, cosineRays = 0, shadowRays = 0;
   RareCounts rare;
 
+  uint64_t rays() const { return cameraRays + lobeRays + cosineRays + shadowRays; }
   Counts& operator+=(const Counts& b) {
-    for (int i = 0; i < kTechniques; ++i) samples[i] += b.samples[i];
+    for (int i = 0; i < kTechniques; ++i) samples[i] += b.samples[i], following[i] += b.following[i];
     cameraRays += b.cameraRays, lobeRays += b.lobeRays, cosineRays += b.cosineRays, shadowRays += b.shadowRays;
     rare += b.rare;
     return *this;
@@ -81,6 +82,9 @@ struct Continuation {
   Ray ray;
   Hit hit;
   Rgb weight{0, 0, 0};  // f cos / pdf with MIS weights and counts, for light that no light sample covers
+  Technique technique = kLobe;
+  float scale = 0;  // weight / (f cos)
+  Fractions p{};    // densities of the techniques
 };
 
 struct Continuations {
@@ -95,9 +99,8 @@ struct HitMoments {
 
 // What the pilot wants to know of a hit.
 struct HitRecord {
-  HitMoments& moments;
-  CandidateSums* candidates = nullptr;  // where the allocation is `auto`
-  Fractions cost{1, 1, 1};              // of one sample of each technique, for `auto`
+  HitMoments& moments;                 // of the light that comes directly
+  CandidateHit* candidates = nullptr;  // where the allocation is `auto`: of all light
 };
 
 // Estimates the direct light at x, in double where T is (sharp lobes). Continuations are kept only if N needs bounces.
@@ -143,11 +146,10 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
   if (vectorised) evaluate(s, wo, batch, j);
 
   HitMoments* const moments = record != nullptr ? &record->moments : nullptr;
-  std::optional<CandidateHit> candidates;
-  if (record != nullptr && record->candidates != nullptr) candidates.emplace(candidatesOf(plan.available));
+  CandidateHit* const candidates = record != nullptr ? record->candidates : nullptr;
   const auto note = [&](Moments& m, Rgb f, const Fractions& p, TechniqueMask used) {
     m.add(luminance(f), p, mixture.n, used);
-    if (candidates) candidates->add(luminance(f), p, mixture.n, used);
+    if (candidates != nullptr) candidates->add(luminance(f), p, mixture.n, used);
   };
 
   // One sample's share of an emitter's light, by MIS over the techniques of each integral.
@@ -171,7 +173,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       sum += f * mixture.scale(t, p, kDiffuseTechniques);
       if (moments != nullptr) note(moments->diffuse, f, p, kDiffuseTechniques);
     }
-    if (candidates) candidates->addBoth(luminance(fs * radiance), luminance(fd * radiance), p, mixture.n);
+    if (candidates != nullptr) candidates->addBoth(luminance(fs * radiance), luminance(fd * radiance), p, mixture.n);
   };
 
   for (int k = 0; k < j; ++k) {
@@ -241,16 +243,12 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     }
     if constexpr (kPath) {
       p[kLight] = 0;  // no light sample covers what is reflected there
-      Rgb w;
-      if (!split)
-        w = (fs + fd) * mixture.scale(t, p, kAllTechniques);
-      else
-        w = t == kLobe ? fs * mixture.scale(t, p, kSpecularTechniques) : fd * mixture.scale(t, p, kDiffuseTechniques);
-      if (maxComponent(w) > 0) continuations.list.set(continuations.count++, {ray, hit, w});
+      const float scale = mixture.scale(t, p, techniquesFor(plan.integrand, t));
+      const Rgb w = (!split ? fs + fd : t == kLobe ? fs : fd) * scale;
+      if (maxComponent(w) > 0) continuations.list.set(continuations.count++, {ray, hit, w, t, scale, p});
     }
   }
   if (moments != nullptr) moments->specular.hits += 1, moments->diffuse.hits += 1;
-  if (candidates) candidates->addTo(*record->candidates, record->cost);
   return sum;
 }
 

@@ -18,7 +18,7 @@ struct KernelInput {
   Allocation rule;
   Integrand integrand;
   Weights weights;
-  Fractions cost;  // of one sample of each technique, for `auto`
+  SampleCost cost;  // for `auto`
   int samplesPerHit, depth;
   bool lights;       // the light technique has something to aim at
   bool surfaceRays;  // rays of the surface's techniques can find light

@@ -23,7 +23,7 @@ std::pair<HitMoments, CandidateSums> Pilot::smoothed(int x, int y) const {
 }
 
 std::vector<PixelFractions> Pilot::fractions(Allocation rule, Integrand integrand, TechniqueMask available,
-                                             float minimum, const Fractions& cost) const {
+                                             float minimum, const SampleCost& cost) const {
   std::vector<PixelFractions> result(pixels.size());
   tbb::parallel_for(0, height, [&](int y) {
     for (int x = 0; x < width; ++x) {

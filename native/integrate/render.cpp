@@ -126,6 +126,15 @@ class Run {
   tbb::enumerable_thread_specific<Counts> counts_;
 };
 
+SampleCost countedCost(const Counts& counts, int samplesPerHit) {
+  SampleCost cost;
+  cost.hit = 1 / static_cast<float>(samplesPerHit);
+  for (size_t t = 0; t < kTechniques; ++t)
+    if (counts.samples[t] > 0)
+      cost.technique[t] += static_cast<float>(double(counts.following[t]) / double(counts.samples[t]));
+  return cost;
+}
+
 FilmBuffer renderInArena(const BuiltScene& built, const RenderSettings& settings, Statistics& stats,
                          const RenderObserver& observer) {
   RenderSetup setup(built, settings);
@@ -148,17 +157,21 @@ FilmBuffer renderInArena(const BuiltScene& built, const RenderSettings& settings
   FilmBuffer buffer = setup.film();
   Run run(settings, observer, setup, buffer);
   if (observer.started) observer.started(stats);
-  stats.cost = settings.cost;
+  SampleCost& cost = setup.input.cost;
   std::vector<PixelFractions> perPixel;
   if (stats.allocated) {
-    if (settings.measureCost) setup.input.cost = stats.cost = measureCost(built, settings).perSample;
+    if (settings.costFrom == CostFrom::kMeasured) cost = measureCost(built, settings).perSample;
     Pilot pilot(buffer.width, buffer.height, settings.allocation);
+    if (settings.costFrom == CostFrom::kRays) {
+      run.until(1, &pilot);
+      cost = countedCost(run.counts(), settings.samplesPerHit);
+    }
     run.until(pilotSpp, &pilot);
     if (!run.stopped()) {
-      perPixel = pilot.fractions(settings.allocation, settings.integrand, setup.techniques, settings.minFraction,
-                                 setup.input.cost);
+      perPixel = pilot.fractions(settings.allocation, settings.integrand, setup.techniques, settings.minFraction, cost);
       setup.input.perPixel = &perPixel;
     }
+    stats.cost = cost;
     const Clocks pilotTime = run.clocks();
     stats.pilotSeconds = pilotTime.wall;
     stats.pilotCpuSeconds = pilotTime.cpu;

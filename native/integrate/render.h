@@ -19,6 +19,11 @@ std::string_view name(Integrator);
 std::string_view name(SamplerType);
 std::string_view name(FilterType);
 
+// Where the cost of a sample comes from: counted in the pilot (one for a sample, one for each ray of the path that goes
+// on from it, and the camera ray shared by a hit's samples); given; or measured, and the image then depends on the
+// machine.
+enum class CostFrom : uint8_t { kRays, kGiven, kMeasured };
+
 struct RenderSettings {
   Allocation allocation = Allocation::kSecondMoment;
   std::optional<Weights> weights;  // none: what the paper pairs with the allocation
@@ -30,9 +35,9 @@ struct RenderSettings {
   int samplesPerHit = 3;
   uint32_t pilotSpp = 4;
   float minFraction = 0.1f;
-  Fractions cost{1, 1, 1};   // of a lobe, cosine and light sample, for `auto`
-  bool measureCost = false;  // take the measured one instead; the image then depends on the machine
-  int maxDepth = 8;          // surface hits of a path
+  CostFrom costFrom = CostFrom::kRays;  // of samples, for `auto`
+  Fractions cost{1, 1, 1};              // of a lobe, cosine and light sample, where it is given
+  int maxDepth = 8;                     // surface hits of a path
   uint64_t seed = 0;
   int threads = 0;  // 0: all
   bool generalKernel = false;
@@ -50,7 +55,7 @@ struct Statistics {
   int threads = 0;
   TechniqueMask techniques = 0;  // those that the scene has
   bool allocated = false;        // a pilot ran and counts were allocated by it
-  Fractions cost{1, 1, 1};       // that the allocation took into account
+  SampleCost cost;               // that the allocation took into account
 };
 
 struct Clocks {

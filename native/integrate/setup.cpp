@@ -73,7 +73,7 @@ RenderSetup::RenderSetup(const BuiltScene& built, const RenderSettings& s)
             s.allocation,
             s.integrand,
             s.weightRule(),
-            s.cost,
+            {0, s.cost},
             s.samplesPerHit,
             s.integrator == Integrator::kPath ? s.maxDepth : 1,
             built.emitters.any(),

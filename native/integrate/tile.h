@@ -3,6 +3,7 @@
 #pragma once
 
 #include <bit>
+#include <optional>
 
 #include "integrate/kernel.h"
 #include "integrate/path.h"
@@ -57,18 +58,28 @@ Rgb cameraSample(const KernelInput& in, const Ray& ray, uint32_t pixelKey, uint3
   plan.firstPoint = pixel.techniques;
   Continuations more;
   const std::array<uint64_t, kTechniques> before = counts.samples;
+  std::optional<HitRecord> record;
+  std::optional<CandidateHit> candidate;
   if (pilot != nullptr && follows) {
-    HitRecord record{pilot->moments, candidates, in.cost};
-    sum += estimate<N>(world, in.sampler, x, plan, counts, &record, more);
-  } else {
-    sum += estimate<N>(world, in.sampler, x, plan, counts, nullptr, more);
+    if (candidates != nullptr) candidate.emplace(candidatesOf(mask));
+    record.emplace(HitRecord{pilot->moments, candidate ? &*candidate : nullptr});
   }
+  sum += estimate<N>(world, in.sampler, x, plan, counts, record ? &*record : nullptr, more);
   for (size_t i = 0; i < kTechniques; ++i) pixel.techniques[i] += static_cast<uint32_t>(counts.samples[i] - before[i]);
-  if constexpr ((N & kNeedsBounces) != 0)
-    for (int k = 0; k < more.count; ++k)
-      sum += followPath<N>(world, in.sampler, pixelKey,
-                           sample * static_cast<uint32_t>(in.samplesPerHit) + static_cast<uint32_t>(k), more.list[k],
-                           in.depth, counts);
+  if constexpr ((N & kNeedsBounces) != 0) {
+    const Fractions n = Mixture(plan.fractions, plan.samples, plan.weights).n;
+    for (int k = 0; k < more.count; ++k) {
+      const Continuation& c = more.list[k];
+      const uint64_t rays = counts.rays();
+      const Rgb value = followPath<N>(world, in.sampler, pixelKey,
+                                      sample * static_cast<uint32_t>(in.samplesPerHit) + static_cast<uint32_t>(k), c,
+                                      in.depth, counts);
+      sum += value;
+      counts.following[c.technique] += counts.rays() - rays;
+      if (candidate) candidate->add(luminance(value) / c.scale, c.p, n, techniquesFor(plan.integrand, c.technique));
+    }
+  }
+  if (candidate) candidate->addTo(*candidates, in.cost);
   return sum;
 }
 

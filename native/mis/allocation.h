@@ -20,6 +20,11 @@ namespace wardmis {
 
 enum class Integrand : uint8_t { kSplit, kJoint };
 
+// The techniques of the integrand that a surface technique is drawn for.
+constexpr TechniqueMask techniquesFor(Integrand integrand, Technique t) {
+  return integrand == Integrand::kJoint ? kAllTechniques : t == kLobe ? kSpecularTechniques : kDiffuseTechniques;
+}
+
 // Fractions of one integrand's techniques (those in `used`), from its moments; they sum to 1 over `used`.
 // Equal where the moments say nothing (a zero, not finite). Clamped to [minimum, 1 - (n-1) minimum].
 Fractions allocate(Allocation rule, const Moments& m, TechniqueMask used, float minimum);

@@ -23,7 +23,7 @@ const CandidateList& candidatesOf(TechniqueMask available) {
   return lists[available & kAllTechniques];
 }
 
-Fractions chooseCandidate(const CandidateSums& sums, TechniqueMask available, const Fractions& cost) {
+Fractions chooseCandidate(const CandidateSums& sums, TechniqueMask available, const SampleCost& cost) {
   constexpr float kLeastHits = 8;  // fewer say nothing of their own noise
   const CandidateList& list = candidatesOf(available);
   if (!(sums.hits >= kLeastHits)) return list.at(0);
@@ -34,8 +34,7 @@ Fractions chooseCandidate(const CandidateSums& sums, TechniqueMask available, co
     float squares = a[0] * sums.mean[0][c] * sums.mean[0][c] + a[1] * sums.mean[1][c] * sums.mean[1][c];
     if (a[2] > 0) squares += last * (last / a[2]);
     // the pilot's noise may leave less than nothing
-    return std::max(sums.value[c] - squares / sums.hits, 1e-3f * sums.value[c]) *
-           (a[0] * cost[0] + a[1] * cost[1] + a[2] * cost[2]);
+    return std::max(sums.value[c] - squares / sums.hits, 1e-3f * sums.value[c]) * cost.of(a[0], a[1], a[2]);
   };
   int best = 0;
   const float equal = objective(0);

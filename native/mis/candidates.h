@@ -16,6 +16,17 @@ struct CandidateList {
 // Restricted to the techniques that a hit has.
 const CandidateList& candidatesOf(TechniqueMask available);
 
+// What a hit costs, in any unit: a share of the hit itself for each of its samples, and a sample of each technique.
+struct SampleCost {
+  float hit = 0;
+  Fractions technique{1, 1, 1};
+
+  // Of a sample, in mean over fractions a.
+  float of(float a0, float a1, float a2) const {
+    return hit + a0 * technique[0] + a1 * technique[1] + a2 * technique[2];
+  }
+};
+
 // Sums over hits; per candidate the estimate of sum_i a_i E_{p_i}[y_i^2], y_i being what a sample of technique i adds
 // to all integrands with balance weights, and the squared difference of its product with the cost from that of equal
 // counts. mean: of each technique but the last, the estimate of E_{p_i}[y_i]; that of the last follows from
@@ -64,10 +75,8 @@ class CandidateHit {
       value_[c] += list_.a[2][c] * w / ((list_.a[0][c] * p[0] + light) * (list_.a[1][c] * p[1] + light));
     }
   }
-  void addTo(CandidateSums& sums, const Fractions& cost) const {
-    const auto costOf = [&](int c) {
-      return list_.a[0][c] * cost[0] + list_.a[1][c] * cost[1] + list_.a[2][c] * cost[2];
-    };
+  void addTo(CandidateSums& sums, const SampleCost& cost) const {
+    const auto costOf = [&](int c) { return cost.of(list_.a[0][c], list_.a[1][c], list_.a[2][c]); };
     for (int c = 0; c < kCandidates; ++c) {
       const float gain = value_[0] * costOf(0) - value_[c] * costOf(c);
       sums.value[c] += value_[c];
@@ -84,6 +93,6 @@ class CandidateHit {
 
 // The candidate whose gain in predicted variance x cost over equal counts, less the gain's standard error, is the
 // largest; equal counts where none is above nothing, or where hits are too few to tell.
-Fractions chooseCandidate(const CandidateSums& sums, TechniqueMask available, const Fractions& cost);
+Fractions chooseCandidate(const CandidateSums& sums, TechniqueMask available, const SampleCost& cost);
 
 }  // namespace wardmis

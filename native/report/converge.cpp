@@ -464,7 +464,7 @@ class Study {
       at.spp = film.samples, at.time = time;
       at.error = compareImages(toRgb(film), reference);
       at.cameraRays = n.cameraRays;
-      at.rays = n.cameraRays + n.lobeRays + n.cosineRays + n.shadowRays;
+      at.rays = n.rays();
       run.checkpoints.push_back(at);
     };
     RenderObserver watch;

@@ -88,8 +88,8 @@ TEST(Render, MeasuresWhatASampleCosts) {
   double sum = 0, seconds = cost.cameraSample;
   for (size_t t = 0; t < kTechniques; ++t) {
     EXPECT_GE(cost.sample[t], 0) << t;
-    EXPECT_GE(cost.perSample[t], 0.09f) << t;
-    sum += double(cost.perSample[t]);
+    EXPECT_GE(cost.perSample.technique[t], 0.09f) << t;
+    sum += double(cost.perSample.technique[t]);
   }
   EXPECT_GT(cost.sample[0] + cost.sample[1] + cost.sample[2] + cost.cameraSample, 0);
   EXPECT_GT(sum, 1);

@@ -23,9 +23,9 @@ Fractions choose(const WardCase& c, int hits, const Fractions& cost, uint64_t se
       const Sampled s = c.sample(i, random);
       hit.add(s.f, s.p, equal.n, kAllTechniques);
     }
-    hit.addTo(sums, cost);
+    hit.addTo(sums, {0, cost});
   }
-  return chooseCandidate(sums, kAllTechniques, cost);
+  return chooseCandidate(sums, kAllTechniques, {0, cost});
 }
 
 // Measured N Var of one estimate with these fractions.
