@@ -38,18 +38,25 @@ TechniqueCost measureCost(const BuiltScene& built, const RenderSettings& setting
   RenderSettings s = settings;
   s.allocation = Allocation::kEqual;
   RenderSetup setup(built, s);
-  std::vector<Fractions> turns{setup.input.fractions};
+  struct Turn {
+    Fractions fractions;
+    int samples;  // per hit
+  };
+  // twice the samples in one: else nothing could tell what a hit costs from what all its samples cost
+  const int once = std::min(s.samplesPerHit, kMaxSamplesPerHit / 2);
+  std::vector<Turn> turns{{setup.input.fractions, once}, {setup.input.fractions, 2 * once}};
   for (int t = 0; t < kTechniques; ++t) {
     if ((setup.techniques >> t & 1u) == 0 || setup.techniques == (1u << t)) continue;
     Fractions f{};
     for (int k = 0; k < kTechniques; ++k) f[k] = k == t ? kHeavy : (1 - kHeavy) / 2;
-    turns.push_back(restrict(f, setup.techniques));
+    turns.push_back({restrict(f, setup.techniques), once});
   }
 
   // A row for each turn; CPU seconds = cameraSample * paths + sum sample[i] * n_i.
   std::vector<std::array<double, 2 + kTechniques>> rows(turns.size());
-  const auto pass = [&](uint32_t round, const Fractions& fractions) {
-    setup.input.fractions = fractions;
+  const auto pass = [&](uint32_t round, const Turn& turn) {
+    setup.input.fractions = turn.fractions;
+    setup.input.samplesPerHit = turn.samples;
     FilmBuffer film = setup.film();
     film.samples = round;
     tbb::enumerable_thread_specific<Counts> counts;

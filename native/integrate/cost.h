@@ -14,10 +14,10 @@ struct TechniqueCost {
   SampleCost perSample;  // relative to the mean of the techniques; 1 where nothing was measured
 };
 
-// Renders camera samples, which are thrown away, with the counts moved towards each technique in turn, and solves for
-// the costs by least squares. A pass to warm up, then rounds of up to four samples per pixel: one for every 50 of
-// settings.spp, at least three, more than these for at most half a second. A machine that does other things makes them
-// unsure.
+// Renders camera samples, which are thrown away, with the counts moved towards each technique in turn and once doubled,
+// and solves for the costs by least squares. A pass to warm up, then rounds of up to four samples per pixel: one for
+// every 50 of settings.spp, at least three, more than these for at most half a second. A machine that does other things
+// makes them unsure.
 TechniqueCost measureCost(const BuiltScene& built, const RenderSettings& settings);
 
 }  // namespace wardmis

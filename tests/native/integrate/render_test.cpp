@@ -224,6 +224,76 @@ TEST(Render, EdgesAreNotStarved) {
   EXPECT_LT(std::abs(difference) / std::sqrt(variance), 4) << difference;
 }
 
+// Mean over seeds of the images' squared error, as a ratio to that of equal counts, at equal samples.
+double errorRatio(const Scene& scene, RenderSettings s, Allocation rule) {
+  const BuiltScene built(scene, s.threads);
+  const auto film = [&](Allocation allocation, uint64_t seed, uint32_t spp) {
+    RenderSettings t = s;
+    t.allocation = allocation, t.seed = seed, t.spp = spp;
+    Statistics statistics;
+    return render(built, t, statistics);
+  };
+  const FilmBuffer reference = film(Allocation::kEqual, 1000, 128 * s.spp);
+  const auto error = [&](Allocation allocation) {
+    double sum = 0;
+    for (uint64_t seed = 1; seed <= 12; ++seed) {
+      const FilmBuffer f = film(allocation, seed, s.spp);
+      for (size_t i = 0; i < f.pixels.size(); ++i) {
+        const double d = double(luminance(f.mean(f.pixels[i])) - luminance(reference.mean(reference.pixels[i])));
+        sum += d * d;
+      }
+    }
+    return sum;
+  };
+  return error(rule) / error(Allocation::kEqual);
+}
+
+// A block under an even sky and a small lamp: cosine samples of the sky do not scatter, so that any scatter of the
+// *counts* shows, and `auto` must see that nothing is to be gained. With counts rounded at random the ratio for Sobol's
+// points was 1.9, now .99. Fixed seeds.
+TEST(Render, CountsThemselvesAreNoNoise) {
+  Scene scene;
+  scene.materials = {ward({0.8f, 0.8f, 0.8f}, {0.04f, 0.04f, 0.04f}, 0.3f, WardVariant::kWardGmd)};
+  addMesh(scene, {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}},
+          {4, 5, 6, 4, 6, 7, 1, 2, 6, 1, 6, 5, 0, 1, 5, 0, 5, 4, 2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7}, 0);
+  scene.world.radiance = {0.05f, 0.05f, 0.05f};
+  Light point;
+  point.emitted = {8, 8, 8};
+  point.radius = 0.1f;
+  point.toWorld.t = {2, 3, 4};
+  scene.lights = {point};
+  lookFrom(scene, 0.9f, 2, 24);
+  RenderSettings s = quick();
+  s.integrator = Integrator::kDirect;
+  s.spp = 32;
+  for (SamplerType sampler : {SamplerType::kIndependent, SamplerType::kSobol}) {
+    s.sampler = sampler;
+    EXPECT_LT(errorRatio(scene, s, Allocation::kAuto), 1.1) << name(sampler);
+  }
+}
+
+// A ball over a bright floor: most of its light comes by way of the floor, which no light sample finds. Driven by
+// direct light alone, `auto` took the samples from the technique that finds it: ratios of 2 and 3, now .87 and .96.
+TEST(Render, AutoSeesIndirectLight) {
+  Scene scene;
+  scene.materials = {ward({0.9f, 0.9f, 0.9f}, {0, 0, 0}, 0.1f, WardVariant::kWard),
+                     ward({0.7f, 0.7f, 0.7f}, {0.05f, 0.05f, 0.05f}, 0.3f, WardVariant::kWardGmd)};
+  addPlane(scene, 6, 0, -1);
+  addSphere(scene, 24, 1);
+  Light lamp;
+  lamp.type = LightType::kArea;
+  lamp.emitted = {3, 3, 3};
+  lamp.toWorld.t = {-2, 1, 4};
+  scene.lights = {lamp};
+  lookFrom(scene, 1.3f, 1, 24);
+  RenderSettings s = quick();
+  s.spp = 32;
+  for (SamplerType sampler : {SamplerType::kIndependent, SamplerType::kSobol}) {
+    s.sampler = sampler;
+    EXPECT_LT(errorRatio(scene, s, Allocation::kAuto), 1.02) << name(sampler);
+  }
+}
+
 TEST(Render, CountsWhatItSpends) {
   RenderSettings s = quick();
   s.integrator = Integrator::kDirect;

@@ -4,6 +4,7 @@
 
 #include <numeric>
 
+#include "math/random.h"
 #include "mis/allocation.h"
 #include "statistics.h"
 
@@ -54,6 +55,32 @@ TEST(SystematicCounts, AreRightInTheMean) {
     }
     for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(sum[i] / kSteps, double(a[i]) * n, 1.0 / kSteps + 4e-7 * n);
   }
+}
+
+// What makes a pixel's counts whole: over the visits 2^k ... 2^(k+1) - 1 each technique gets exactly its share.
+TEST(WholeCounts, AreExactOverBlocksOfVisits) {
+  Random random(3);
+  const Sampler sampler(SamplerType::kIndependent, 7, 1);
+  for (uint32_t k = 0; k < 40; ++k) {
+    const Fractions a = randomFractions(random);
+    const int n = random.integer(3, 12);
+    for (uint32_t block : {4u, 8u, 16u, 32u, 64u, 128u}) {
+      const Fractions whole = wholeCounts(a, n, block);
+      const float units = static_cast<float>(n) * static_cast<float>(std::min(block, 64u));
+      std::array<int, 3> total{};
+      for (uint32_t visit = block; visit < 2 * block; ++visit) {
+        const auto counts = systematicCounts(whole, n, sampler.spread1D(k, 2, visit));
+        for (size_t i = 0; i < 3; ++i) total[i] += counts[i];
+      }
+      for (size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(total[i], std::lround(whole[i] * static_cast<float>(n) * static_cast<float>(block))) << i;
+        EXPECT_EQ(whole[i] > 0, a[i] > 0);
+        EXPECT_NEAR(whole[i], a[i], 2.01f / units);
+      }
+    }
+  }
+  const Fractions a{0.1f, 0.2f, 0.7f};
+  EXPECT_EQ(wholeCounts(a, 3, 2), a) << "too few visits for shares: rounding would change them too much";
 }
 
 TEST(SystematicCounts, WholeSharesDoNotVary) {
