@@ -30,6 +30,62 @@ constexpr size_t kSmallestGroup = 64;    // pixels
 json toJson(const Interval& i) { return {{"mean", i.value}, {"low", i.low}, {"high", i.high}}; }
 json toJson(const std::optional<Interval>& i) { return i ? toJson(*i) : json(); }
 
+// Pixels of the image that belong together.
+struct Group {
+  std::string kind, name;
+  std::vector<uint32_t> pixels;
+};
+
+std::vector<Group> groupsOf(const Experiment& e) {
+  std::map<std::string, std::vector<uint32_t>> objects, materials, stiffness;
+  constexpr std::pair<float, const char*> kClasses[] = {
+      {2, "a: 1 to 2"}, {10, "b: 2 to 10"}, {100, "c: 10 to 100"}, {1e4f, "d: 100 to 10⁴"}, {1e38f, "e: over 10⁴"}};
+  for (uint32_t i = 0; i < e.survey.pixels.size(); ++i) {
+    const SurveyPixel& p = e.survey.pixels[i];
+    if (p.material < 0) continue;
+    if (const std::string* name = e.built->geometry.placements[p.placement].name) objects[*name].push_back(i);
+    materials[e.scene->materials[static_cast<size_t>(p.material)].name].push_back(i);
+    if (p.stiffness > 0)
+      for (const auto& [limit, name] : kClasses)
+        if (p.stiffness < limit) {
+          stiffness[name].push_back(i);
+          break;
+        }
+  }
+  std::vector<Group> groups;
+  for (auto* kind : {&objects, &materials, &stiffness}) {
+    std::vector<Group> found;
+    for (auto& [name, pixels] : *kind)
+      if (pixels.size() >= kSmallestGroup)
+        found.push_back({kind == &objects     ? "object"
+                         : kind == &materials ? "material"
+                                              : "stiffness",
+                         kind == &stiffness ? name.substr(3) : name, std::move(pixels)});
+    if (found.size() < 2) continue;  // the whole image says it already
+    if (kind != &stiffness)
+      std::stable_sort(found.begin(), found.end(),
+                       [](const Group& a, const Group& b) { return a.pixels.size() > b.pixels.size(); });
+    if (found.size() > kGroupsShown) found.resize(kGroupsShown);
+    groups.insert(groups.end(), std::make_move_iterator(found.begin()), std::make_move_iterator(found.end()));
+  }
+  return groups;
+}
+
+// A group's pixels as an image of one row, and the reference's.
+RgbImage partOf(const RgbImage& image, const Group& g) {
+  RgbImage part{static_cast<int>(g.pixels.size()), 1, {}};
+  part.rgb.reserve(3 * g.pixels.size());
+  for (const uint32_t i : g.pixels) part.rgb.insert(part.rgb.end(), &image.rgb[3 * i], &image.rgb[3 * i] + 3);
+  return part;
+}
+Reference partOf(const Reference& reference, const Group& g) {
+  Reference part;
+  part.image = partOf(reference.image, g);
+  if (reference.known())
+    part.setVariance(partOf({reference.image.width, reference.image.height, reference.variance}, g).rgb);
+  return part;
+}
+
 // What is known of one configuration besides its runs' figures.
 struct Measured {
   const Configuration* configuration = nullptr;
@@ -39,6 +95,7 @@ struct Measured {
   std::vector<float> predicted;                           // per pixel: variance that the runs claim; empty: unknown
   std::array<std::vector<float>, kTechniques> fractions;  // per pixel; empty where the technique is not there
   RgbImage first;                                         // of the first seed
+  std::vector<std::vector<Metrics>> groups;               // of each group, of each seed; their floors are still in them
   std::vector<uint8_t> wins;  // against the baseline, see Reporter::wins; empty: not compared
 
   double cpu(size_t run) const {
@@ -55,7 +112,7 @@ double wallSpread(const Measured& m) {
   return walls.back() / walls[walls.size() / 2];
 }
 
-Measured load(const Experiment& e, size_t k) {
+Measured load(const Experiment& e, size_t k, const std::vector<Group>& groups) {
   Measured m;
   m.configuration = &e.configurations[k];
   m.runs = &e.runs[k];
@@ -85,6 +142,11 @@ Measured load(const Experiment& e, size_t k) {
         m.fractions[t].resize(pixels);
         for (size_t i = 0; i < pixels; ++i) m.fractions[t][i] += (*v)[i] / static_cast<float>(n);
       }
+  }
+  for (const Group& g : groups) {
+    const RgbImage reference = partOf(m.reference->image, g);
+    std::vector<Metrics>& each = m.groups.emplace_back();
+    for (const RgbImage& image : images) each.push_back(compareImages(partOf(image, g), reference));
   }
   m.seeds = seedStatistics(images, m.reference->image, m.reference->variance);
   m.first = std::move(images[0]);
@@ -142,9 +204,9 @@ double roundUp(double x) {
 
 class Reporter {
  public:
-  Reporter(const Experiment& e, const std::function<void(double)>& told) : e_(e) {
+  Reporter(const Experiment& e, const std::function<void(double)>& told) : e_(e), groups_(groupsOf(e)) {
     for (size_t k = 0; k < e.configurations.size(); ++k) {
-      measured_.push_back(load(e, k));
+      measured_.push_back(load(e, k, groups_));
       if (told) told(0.7 * double(k + 1) / double(e.configurations.size()));
     }
     base_ = &measured_[e.baseline];
@@ -472,10 +534,12 @@ class Reporter {
             {"pooled", toJson(pooled)},
             {"low", pooled ? json(pooled->low) : json()},
             {"high", pooled ? json(pooled->high) : json()},
-            {"text", independent
-                         ? "1 is expected: the samples are independent."
-                         : "More than 1 is expected: the runs estimate as if their samples were independent, and the "
-                           "sampler's evenly spread points do better."}};
+            {"text",
+             independent
+                 ? "1 is expected: the samples are independent. More where counts are not whole at each hit: they are "
+                   "spread evenly over the pixel's samples, which its own estimate does not see."
+                 : "More than 1 is expected: the runs estimate as if their samples were independent, and the "
+                   "sampler's evenly spread points do better."}};
   }
 
   json allocationOf(const Measured& m) const {
@@ -542,77 +606,43 @@ class Reporter {
     return result;
   }
 
-  struct Group {
-    std::string kind, name;
-    std::vector<uint32_t> pixels;
-  };
-  const std::vector<Group>& groups() const {
-    if (!groups_.empty()) return groups_;
-    std::map<std::string, std::vector<uint32_t>> objects, materials, stiffness;
-    constexpr std::pair<float, const char*> kClasses[] = {
-        {2, "a: 1 to 2"}, {10, "b: 2 to 10"}, {100, "c: 10 to 100"}, {1e4f, "d: 100 to 10⁴"}, {1e38f, "e: over 10⁴"}};
-    for (uint32_t i = 0; i < e_.survey.pixels.size(); ++i) {
-      const SurveyPixel& p = e_.survey.pixels[i];
-      if (p.material < 0) continue;
-      if (const std::string* name = e_.built->geometry.placements[p.placement].name) objects[*name].push_back(i);
-      materials[e_.scene->materials[static_cast<size_t>(p.material)].name].push_back(i);
-      if (p.stiffness > 0)
-        for (const auto& [limit, name] : kClasses)
-          if (p.stiffness < limit) {
-            stiffness[name].push_back(i);
-            break;
-          }
-    }
-    for (auto* kind : {&objects, &materials, &stiffness}) {
-      std::vector<Group> found;
-      for (auto& [name, pixels] : *kind)
-        if (pixels.size() >= kSmallestGroup)
-          found.push_back({kind == &objects     ? "object"
-                           : kind == &materials ? "material"
-                                                : "stiffness",
-                           kind == &stiffness ? name.substr(3) : name, std::move(pixels)});
-      if (found.size() < 2) continue;  // the whole image says it already
-      if (kind != &stiffness)
-        std::stable_sort(found.begin(), found.end(),
-                         [](const Group& a, const Group& b) { return a.pixels.size() > b.pixels.size(); });
-      if (found.size() > kGroupsShown) found.resize(kGroupsShown);
-      groups_.insert(groups_.end(), std::make_move_iterator(found.begin()), std::make_move_iterator(found.end()));
-    }
-    return groups_;
-  }
-
-  json groupsOf(const Measured& m) const {
+  json groups(const Measured& m) const {
     json all = json::array();
-    for (const Group& g : groups()) {
-      const auto errors = [&](const Measured& x) {
+    for (size_t k = 0; k < groups_.size(); ++k) {
+      const Group& g = groups_[k];
+      // per seed, without the reference's share
+      const auto errors = [&](const Measured& x, const MetricInfo& metric) {
+        const double floor = floorOf(partOf(*x.reference, g), metric);
         std::vector<double> perSeed;
-        for (const std::vector<float>& e : x.seeds.errors) {
-          double sum = 0;
-          for (const uint32_t i : g.pixels) sum += double(e[i]);
-          perSeed.push_back(sum / double(g.pixels.size()));
-        }
+        for (const Metrics& error : x.groups[k]) perSeed.push_back(error.*metric.value - floor);
         return perSeed;
       };
-      const std::vector<double> own = errors(m), base = errors(*base_);
+      const std::vector<double> own = errors(m, metricOf(&Metrics::relMse)),
+                                base = errors(*base_, metricOf(&Metrics::relMse));
       std::optional<Interval> ratio, errorRatio;
       if (&m != base_) {
         errorRatio = Bootstrap(commonSeeds_).interval([&](std::span<const uint32_t> draw) -> std::optional<double> {
           double a = 0, b = 0;
           for (const uint32_t i : draw) a += own[i], b += base[i];
-          return b > 0 ? std::optional(a / b) : std::nullopt;
+          return b > 0 ? std::optional(std::max(a, 0.0) / b) : std::nullopt;
         });
         ratio = Bootstrap(commonSeeds_).interval([&](std::span<const uint32_t> draw) -> std::optional<double> {
           double a = 0, b = 0, s = 0, t = 0;
           for (const uint32_t i : draw) a += own[i], b += base[i], s += m.cpu(i), t += base_->cpu(i);
-          return b > 0 ? std::optional(a * s / (b * t)) : std::nullopt;
+          return b > 0 ? std::optional(std::max(a, 0.0) * s / (b * t)) : std::nullopt;
         });
       }
-      all.push_back({{"kind", g.kind},
-                     {"name", g.name},
-                     {"pixels", g.pixels.size()},
-                     {"relmse", toJson(Bootstrap(own.size()).mean(own))},
-                     {"error_ratio", toJson(errorRatio)},
-                     {"ratio", toJson(ratio)}});
+      json found{{"kind", g.kind},
+                 {"name", g.name},
+                 {"pixels", g.pixels.size()},
+                 {"error_ratio", toJson(errorRatio)},
+                 {"ratio", toJson(ratio)}};
+      for (const MetricInfo& metric : allMetrics()) {
+        Interval mean = Bootstrap(m.runs->size()).mean(errors(m, metric));
+        for (double* x : {&mean.value, &mean.low, &mean.high}) *x = std::max(*x, 0.0);
+        found[metric.name] = toJson(mean);
+      }
+      all.push_back(std::move(found));
     }
     return all;
   }
@@ -664,7 +694,7 @@ class Reporter {
              c.external ? json()
                         : json{{"nan", dropped.nan}, {"infinite", dropped.infinite}, {"negative", dropped.negative}}},
             {"wins", wins},
-            {"groups", groupsOf(m)}};
+            {"groups", groups(m)}};
   }
 
   json techniques() const {
@@ -882,7 +912,7 @@ class Reporter {
   double Clocks::*clock_ = &Clocks::wall;
   size_t commonSeeds_ = 0;
   double target_ = 0, time_ = 0;
-  mutable std::vector<Group> groups_;
+  std::vector<Group> groups_;
 };
 
 }  // namespace

@@ -120,12 +120,15 @@ std::string configurationsCsv(const json& report) {
 }
 
 std::string groupsCsv(const json& report) {
-  std::string csv = "configuration,kind,name,pixels," + header("relmse") + ',' + header("error_ratio") + ',' +
-                    header("error_x_time_ratio") + '\n';
+  std::string csv = "configuration,kind,name,pixels";
+  for (const MetricInfo& metric : allMetrics()) csv += ',' + header(metric.name);
+  csv += ',' + header("error_ratio") + ',' + header("error_x_time_ratio") + '\n';
   for (const json& c : report["configurations"])
-    for (const json& g : c["groups"])
-      csv += cell(c["name"]) + ',' + cell(g["kind"]) + ',' + cell(g["name"]) + ',' + cell(g["pixels"]) + ',' +
-             cells(g["relmse"]) + ',' + cells(g["error_ratio"]) + ',' + cells(g["ratio"]) + '\n';
+    for (const json& g : c["groups"]) {
+      csv += cell(c["name"]) + ',' + cell(g["kind"]) + ',' + cell(g["name"]) + ',' + cell(g["pixels"]);
+      for (const MetricInfo& metric : allMetrics()) csv += ',' + cells(g[metric.name]);
+      csv += ',' + cells(g["error_ratio"]) + ',' + cells(g["ratio"]) + '\n';
+    }
   return csv;
 }
 

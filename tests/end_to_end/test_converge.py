@@ -118,6 +118,21 @@ class Converge(CommandTest):
         mean = np.mean([r["checkpoints"][-1]["mse"] for r in runs]) - report["reference"]["floor"]["mse"]
         self.assertAlmostEqual(self.of(report, "equal")["curve"][-1]["mse"]["mean"], mean, delta=1e-6 * mean)
 
+    def test_parts_of_the_image_make_up_the_whole(self):
+        _, report = self.study(
+            "--max-spp", 4, "--seeds", 3, "-c", "equal", "--resolution", "96x64", scene="veach", small=False
+        )
+        groups, last = self.of(report, "equal")["groups"], self.of(report, "equal")["curve"][-1]
+        for kind in ("object", "material"):
+            parts = [g for g in groups if g["kind"] == kind]
+            self.assertEqual(sum(g["pixels"] for g in parts), 96 * 64, "all of the image shows something")
+            for metric in ("mse", "relmse", "mape", "smape"):
+                mean = sum(g[metric]["mean"] * g["pixels"] for g in parts) / (96 * 64)
+                self.assertAlmostEqual(mean / last[metric]["mean"], 1, places=6)
+            for g in parts:
+                self.assertGreater(g["relmse_trimmed"]["mean"], 0)
+        self.assertIn("smape_high", (self.folder / "study/groups.csv").read_text().splitlines()[0])
+
     def test_a_run_is_the_render_of_its_seed(self):
         self.quick()
         self.render("--allocation", "second-moment", "--spp", "8", "--seed", "2")
