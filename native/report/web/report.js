@@ -347,7 +347,8 @@
     const curves = plot("curves", "error of each configuration against time, both logarithmic", () => `${metric.name}-${axis.key}`, (place) => {
       place.style.height = isNarrow() ? `${420 + 20 * (configurations.length + 2)}px` : ""; // the legend has a line for each
       const { list, x, y } = traces();
-      const ticks = (r) => ({ dtick: r[1] - r[0] > 2.2 ? 1 : "D2", exponentformat: r[0] > -2.5 && r[1] < 3.5 ? "none" : "power" });
+      // Within two decades 1, 2 and 5 are marked, written out: by itself Plotly drops their zeros.
+      const ticks = (r) => (r[1] - r[0] > 2.2 ? { dtick: 1, exponentformat: r[0] > -2.5 && r[1] < 3.5 ? "none" : "power" } : { dtick: "D2", tickformat: "~g" });
       return { traces: list, layout: {
         uirevision: "legend", legend: { orientation: "h", x: 0, y: isNarrow() ? -0.17 : -0.15, yanchor: "top", font: { size: 13 } },
         xaxis: { type: "log", range: x, uirevision: axis.key, title: { text: axis.title, standoff: 8 }, ...ticks(x) },
