@@ -62,7 +62,7 @@ void SettingOptions::add(CLI::App& app) {
   app.add_option("--pilot-spp", numbers_.pilotSpp, "camera samples per pixel that estimate the moments")
       ->check(CLI::Range(0u, 1u << 20))
       ->capture_default_str();
-  app.add_option("--min-fraction", numbers_.minFraction, "no technique gets less than this share")
+  app.add_option("--min-fraction", numbers_.minFraction, "no technique gets less than this share; not for auto")
       ->check(between(0.001, 0.5))
       ->capture_default_str();
   app.add_option("--cost", cost_,
@@ -87,6 +87,11 @@ RenderSettings SettingOptions::chosen() const {
   s.generalKernel = kernel_ == "general";
   s.costFrom = cost_ == "rays" ? CostFrom::kRays : cost_ == "measured" ? CostFrom::kMeasured : CostFrom::kGiven;
   if (s.costFrom == CostFrom::kGiven) s.cost = costOf(cost_);
+  if (s.allocation == Allocation::kAuto && s.weightRule() == Weights::kNonbalance)
+    throw Error(ExitCode::kUsage,
+                "--allocation auto with --weights nonbalance: auto predicts the variance for balance weights, and "
+                "would do harm with these",
+                "leave --weights to auto, or take --allocation standard-deviation, the best for nonbalance weights");
   return s;
 }
 

@@ -72,8 +72,9 @@ TechniqueCost measureCost(const BuiltScene& built, const RenderSettings& setting
   pass(0, turns[0]);  // meets cold caches, and threads that must begin
   const double start = wallSeconds();
   const double allowed = settings.seconds > 0 ? std::min(kLongest, settings.seconds / 50) : kLongest;
-  const uint32_t rounds = settings.seconds > 0 ? 64 : std::clamp(settings.spp / 50, 3u, 64u);
-  for (uint32_t round = 0; round < rounds && (round < 3 || wallSeconds() - start < allowed); ++round)
+  const uint32_t rounds = settings.seconds > 0 ? 64 : std::clamp(settings.spp / 50, 1u, 64u);
+  const uint32_t least = std::min(rounds, 3u);
+  for (uint32_t round = 0; round < rounds && (round < least || wallSeconds() - start < allowed); ++round)
     for (size_t k = 0; k < turns.size(); ++k) {
       const size_t turn = round % 2 == 0 ? k : turns.size() - 1 - k;  // ABCCBA
       const auto row = pass(round, turns[turn]);

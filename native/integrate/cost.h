@@ -15,8 +15,8 @@ struct TechniqueCost {
 };
 
 // Renders camera samples, which are thrown away, with the counts moved towards each technique in turn and once doubled,
-// and solves for the costs by least squares. A pass to warm up, then rounds of up to four samples per pixel: one for
-// every 50 of settings.spp, at least three, more than these for at most half a second. A machine that does other things
+// and solves for the costs by least squares. A pass to warm up, then rounds of up to five samples per pixel: one for
+// every 50 of settings.spp, at least one, more than three for at most half a second. A machine that does other things
 // makes them unsure.
 TechniqueCost measureCost(const BuiltScene& built, const RenderSettings& settings);
 

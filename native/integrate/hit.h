@@ -212,6 +212,8 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
         const Rgb f =
             ((l.visibility & kSeenByGlossy) != 0 ? fs : Rgb{}) + ((l.visibility & kSeenByDiffuse) != 0 ? fd : Rgb{});
         sum += f * l.radiance / (l.pdf * mixture.n[kLight]);
+        // which of the lights is drawn is noise, too, and no other technique covers them
+        if (candidates != nullptr) candidates->add(luminance(f * l.radiance), {0, 0, l.pdf}, mixture.n, maskOf(kLight));
       } else {
         p[kLight] = l.pdf;
         add(kLight, fs, fd, l.radiance, p, l.visibility);

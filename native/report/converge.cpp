@@ -130,6 +130,7 @@ class Study {
     references();
     if (!stopped()) {
       e.survey = survey(built_, s, kSurveySamples);
+      s.spp = std::max(s.spp, 150u);  // three rounds of measuring
       withThreads(s.threads, [&] { e.sampleCost = measureCost(built_, s).sample; });
     }
     e.runs.resize(e.configurations.size());

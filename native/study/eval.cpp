@@ -76,7 +76,7 @@ bool parse(std::string_view line, uint64_t number, std::string_view names, std::
     double value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
-      refuse(fmt::format("'{}' is not a finite number", shown(word)));
+      refuse(fmt::format("'{}' is no finite number that a double can hold", shown(word)));
     if (found < numbers.size()) numbers[found] = value;
     ++found;
   }

@@ -63,6 +63,7 @@ class Usage(CommandTest):
             ((*render, "--spp", "4", "--time", "1"), "--time"),
             ((*render, "--allocation", "fair"), "second-moment"),
             ((*render, "--sampler", "halton"), "sobol"),
+            ((*render, "--allocation", "auto", "--weights", "nonbalance"), "standard-deviation"),
             ((*render, "--samples-per-hit", "257"), "256"),
             ((*render, "--min-fraction", "0.9"), "--min-fraction"),
             ((*render, "--threads", "-1"), "--threads"),

@@ -272,6 +272,33 @@ TEST(Render, CountsThemselvesAreNoNoise) {
   }
 }
 
+// A soft box and lights that the light technique alone can meet: which of them a sample takes is most of the noise.
+// Blind to them, `auto` took samples from the light technique. Fixed seeds.
+TEST(Render, AutoSeesLightsWithoutSize) {
+  Scene scene;
+  scene.materials = {ward({0.6f, 0.6f, 0.6f}, {0.1f, 0.1f, 0.1f}, 0.2f, WardVariant::kWardGmd)};
+  addPlane(scene, 3, 0);
+  addSphere(scene, 24, 0);
+  Light box;
+  box.type = LightType::kArea;
+  box.sizeX = box.sizeY = 4;
+  box.emitted = {1, 1, 1};
+  box.toWorld.t = {0, 0, 3};
+  Light point;
+  point.emitted = {30, 30, 30};
+  point.toWorld.t = {-2, 1, 3};
+  scene.lights = {box, point, point};
+  scene.lights[2].toWorld.t = {2, -1, 3};
+  lookFrom(scene, 0.9f, 1.5f, 24);
+  RenderSettings s = quick();
+  s.integrator = Integrator::kDirect;
+  s.spp = 32;
+  for (SamplerType sampler : {SamplerType::kIndependent, SamplerType::kSobol}) {
+    s.sampler = sampler;
+    EXPECT_LT(errorRatio(scene, s, Allocation::kAuto), 1.02) << name(sampler);
+  }
+}
+
 // A ball over a bright floor: most of its light comes by way of the floor, which no light sample finds. Driven by
 // direct light alone, `auto` took the samples from the technique that finds it: ratios of 2 and 3, now .87 and .96.
 TEST(Render, AutoSeesIndirectLight) {
