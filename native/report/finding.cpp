@@ -38,7 +38,7 @@ std::vector<std::string> finding(const json& r) {
   std::vector<std::string> slower, ties, unreached, biased, heavy;
   std::vector<std::pair<double, std::string>> faster;  // by ratio
   double secondLow = 1;                                // lower end of the intervals of all but the best
-  json best;
+  json best, baseline;
   bool baseUnreached = false;
   std::string target;
   for (const json& c : r["configurations"]) {
@@ -47,8 +47,10 @@ std::vector<std::string> finding(const json& r) {
     if (c["tail"]["heavy"] == true) heavy.push_back(name);
     const json& t = c["time_to_target"];
     target = number(t["target"]);
-    if (name == base) baseUnreached = t["seconds"].is_null();
-    if (name == base) continue;
+    if (name == base) {
+      baseUnreached = t["seconds"].is_null(), baseline = c;
+      continue;
+    }
     if (t["verdict"] == "not reached") {
       if (t["seconds"].is_null()) unreached.push_back(name);
       continue;
@@ -105,9 +107,24 @@ std::vector<std::string> finding(const json& r) {
                                number(last[r["clock"] == "cpu" ? "cpu" : "wall"]["mean"]), clock,
                                last["spp"].get<int>(), seeds));
   }
-  if (!best.is_null() && best["equal_samples"].is_object() && best["equal_samples"]["ratio"].is_object())
-    said.push_back(fmt::format("At equal samples the error of {} is {} of that of {}.", best["name"].get<std::string>(),
-                               interval(best["equal_samples"]["ratio"]), base));
+  std::vector<std::string> errors, disagree;
+  for (const json& c : r["configurations"]) {
+    if (c["name"] == base || c["time_to_target"]["verdict"] != "faster") continue;
+    const std::string name = c["name"];
+    if (c["equal_samples"].is_object() && c["equal_samples"]["ratio"].is_object())
+      errors.push_back(fmt::format("{} {}", name, interval(c["equal_samples"]["ratio"])));
+    // a squared error is that of the few worst pixels; what most pixels show may say otherwise
+    const json &own = c["curve"].back(), &other = baseline["curve"].back();
+    if (own["spp"] == other["spp"] && own["mape"]["low"] > other["mape"]["high"])
+      disagree.push_back(fmt::format("{} {}", name, number(own["mape"]["mean"])));
+  }
+  if (!errors.empty())
+    said.push_back(fmt::format("At equal samples, errors in shares of that of {}: {}.", base, list(errors)));
+  if (!disagree.empty())
+    said.push_back(
+        fmt::format("By MAPE, which weighs the many small errors more, there is more error than of {} at equal samples "
+                    "with {}; {} has {}.",
+                    base, list(disagree), base, number(baseline["curve"].back()["mape"]["mean"])));
   if (!biased.empty())
     said.push_back(fmt::format(
         "The mean over the seeds differs from the reference for {}: its error does not vanish with more samples.",

@@ -459,6 +459,7 @@ class Converge(CommandTest):
                 for at in run["checkpoints"]:
                     at["wall"] = (0.02 + 0.01 * at["spp"]) * factor[name]
                     at["cpu"] = 2 * at["wall"]
+                    at["mape"] *= 2 if name == "sooner" else 1
                 path.write_text(json.dumps(run))
                 runs.setdefault(name, []).append(run)
         _, report = self.study(*options)
@@ -522,6 +523,10 @@ class Converge(CommandTest):
         said = " ".join(report["finding"])
         self.assertIn("sooner 0.62 [0.62, 0.62]", said)
         self.assertIn("No difference from equal is found for again 1.00 [1.00, 1.00]", said)
+        self.assertIn("errors in shares of that of equal: sooner 1.00 [1.00, 1.00]", said)
+        self.assertRegex(
+            said, r"By MAPE, .* more error than of equal at equal samples with sooner 0\.\d+; equal has 0\."
+        )
 
     def test_veach(self):
         """Where a hit has one integral and two techniques, `variance` ties with `equal` (docs/theory.md); where a plate has two
