@@ -386,16 +386,15 @@ class Study {
     }
     r.image = mean.mean();
     r.setVariance(mean.variance());
-    if (!fs::exists(path)) {
-      ExrImage out{r.image.width, r.image.height, {}, {}};
-      for (const auto& [pass, values] : {std::pair{"Combined", &r.image.rgb}, std::pair{"Variance", &r.variance}})
-        for (size_t c = 0; c < 3; ++c) {
-          ExrChannel channel{fmt::format("{}.{}.{}", kLayer, pass, "RGB"[c]), std::vector<float>(r.image.pixels())};
-          for (size_t i = 0; i < r.image.pixels(); ++i) channel.values[i] = (*values)[3 * i + c];
-          out.channels.push_back(std::move(channel));
-        }
-      writeExr(path, out, true);
-    }
+    // again at every start: what is read by others must not stay damaged
+    ExrImage out{r.image.width, r.image.height, {}, {}};
+    for (const auto& [pass, values] : {std::pair{"Combined", &r.image.rgb}, std::pair{"Variance", &r.variance}})
+      for (size_t c = 0; c < 3; ++c) {
+        ExrChannel channel{fmt::format("{}.{}.{}", kLayer, pass, "RGB"[c]), std::vector<float>(r.image.pixels())};
+        for (size_t i = 0; i < r.image.pixels(); ++i) channel.values[i] = (*values)[3 * i + c];
+        out.channels.push_back(std::move(channel));
+      }
+    writeExr(path, out, true);
     experiment_.references.push_back(std::move(r));
   }
 

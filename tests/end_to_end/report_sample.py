@@ -181,7 +181,7 @@ def configuration(name):
         "renderer": "Cycles 3.4.1" if other else "WardMIS",
         "settings": {"samples": 64, "use_denoising": False} if other else {"allocation": name, "weights": "balance", "sampler": "independent"},
         "description": "path tracing, light sampling and MIS" if other else f"allocation {name}, weights balance",
-        "kernel": [] if other else ["specular", "diffuse", "textures"],
+        "kernel": "" if other else "diffuse, specular, textures",
         "left_out": [] if other else ["anisotropy", "environment"],
         "notes": ["scene synchronisation is excluded", "another reflection model: error against its own reference"] if other else [],
         "runs": 16,
@@ -290,7 +290,7 @@ def minimal():
     }
     unknown = dict.fromkeys(("slope", "bias", "cost", "prediction", "allocation", "counts", "wins"))
     report["configurations"] = [
-        {"name": shown, "renderer": "WardMIS", "settings": {}, "description": "", "kernel": [], "left_out": [], "notes": [],
+        {"name": shown, "renderer": "WardMIS", "settings": {}, "description": "", "kernel": "", "left_out": [], "notes": [],
          "runs": 2, "curve": curve(name, least=True), "pilot_seconds": 0.0, "groups": [], **unknown}
         for shown, name in (("equal", "equal"), ("x<y>&z", "variance"))
     ]  # fmt: skip

@@ -144,9 +144,12 @@ class Converge(CommandTest):
         folder = self.folder / "study"
         before = {path: path.stat().st_mtime_ns for path in folder.rglob("runs/*/*")}
         (folder / "runs/equal/seed-0003.json").unlink()
+        whole = (folder / "reference.exr").read_bytes()
+        (folder / "reference.exr").write_bytes(whole[:1000])
         self.quick(seeds=5)
         after = {path: path.stat().st_mtime_ns for path in folder.rglob("runs/*/*")}
         changed = {path.name for path in after if before.get(path) != after[path]}
+        self.assertEqual((folder / "reference.exr").read_bytes(), whole, "damaged, and written again")
         self.assertEqual(changed, {"seed-0003.json", "seed-0003.exr", "seed-0005.json", "seed-0005.exr"})
 
     def test_another_study_is_not_mixed_in(self):

@@ -152,6 +152,7 @@ class Page(unittest.TestCase):
             "differences, not errors",
             "mean (x − r)² / (r² + ε)",
             "anisotropy",
+            "diffuse, specular, textures",
         ):
             self.assertIn(words, text)
         self.assertNotRegex(text, r"NaN|undefined|null|Infinity|\[object")

@@ -1031,7 +1031,7 @@
   function methodSection() {
     const reference = report.reference || {}, p = report.provenance || {}, floor = reference.floor || {};
     const list = (items) => (filled(items) ? items.join(", ") : kNone);
-    const settings = (c) => Object.entries(c.settings || {}).map(([k, v]) => `${k}=${v !== null && typeof v === "object" ? JSON.stringify(v) : v}`).join(" ");
+    const settings = (c) => Object.entries(c.settings || {}).map(([k, v]) => `${k}=${v !== null && typeof v === "object" ? JSON.stringify(v) : typeof v === "number" ? Number(v.toPrecision(6)) : v}`).join(" ");
     const spread = p.timing_spread ? Object.entries(p.timing_spread).map(([k, v]) => `${k} ${number(v)}`).join(", ") : null;
     const joined = (...parts) => parts.filter((t) => known(t) && t !== "").join(", ");
     return section("method", "Method",
@@ -1051,7 +1051,7 @@
       h("h3", {}, "Configurations"),
       table("configurations", [["Configuration"], ["Renderer"], ["What it is", "wide"], ["Runs", "number"], ["Kernel", "word-column"], ["Left out"]],
         configurations.map((c) => [named(c), c.renderer, c.description || settings(c) ? h("span", {}, c.description || "", " ", h("span", { class: "settings" }, settings(c))) : kNone,
-          integer(c.runs), list(c.kernel), list(c.left_out)])),
+          integer(c.runs), c.kernel || kNone, list(c.left_out)])),
       h("h3", {}, "Provenance"),
       facts("provenance", [
         ["WardMIS", joined(p.version || report.version, p.compiler)], ["Flags", p.flags ? h("code", {}, p.flags) : null],
