@@ -957,7 +957,7 @@
         const y = counts.map((n) => (100 * n) / all);
         return {
           uid: c.name, name: safe(isNarrow() ? short(c.name, 34) : c.name), type: "scatter", mode: "lines", x: [edges[0], ...edges], y: [0, ...y, 0], line: { shape: "hv", color: colourOf(c), width: 2, dash: styleOf(c).dash },
-          text: ["", ...counts.map((n, k) => `<b>${safe(c.name)}</b><br>${number(2 ** edges[k])} to ${number(2 ** edges[k + 1])}: ${percent(n / all)} of the pixels`), ""],
+          text: ["", ...counts.map((n, k) => `<b>${safe(c.name)}</b><br>${k === 0 ? `up to ${number(2 ** edges[1])}` : k === counts.length - 1 ? `from ${number(2 ** edges[k])} on` : `${number(2 ** edges[k])} to ${number(2 ** edges[k + 1])}`}: ${percent(n / all)} of the pixels`), ""],
           hovertemplate: "%{text}<extra></extra>",
         };
       });
@@ -973,7 +973,7 @@
       } };
     });
     return section("prediction", "Predicted and measured variance",
-      read("Each pixel’s own estimate of its variance, divided by the variance over the seeds. Around 1 the estimates can be trusted; the width is mostly that of a variance from so few seeds."),
+      read("Each pixel’s own estimate of its variance, divided by the variance over the seeds. Around 1 the estimates can be trusted; the width is mostly that of a variance from so few seeds. The outermost bins hold all that lies beyond them."),
       place,
       table("predicted over measured variance", [["Configuration"], ["Median of the pixels", "number"], ["All pixels together", "number"]], of.map((c) => [named(c), number(c.prediction.median), c.prediction.pooled ? interval(c.prediction.pooled) : kNone])),
       words(of.map((c) => [c, [c.prediction.text]])));
