@@ -67,7 +67,7 @@ Rgb cameraSample(const KernelInput& in, const Ray& ray, uint32_t pixelKey, uint3
   sum += estimate<N>(world, in.sampler, x, plan, counts, record ? &*record : nullptr, more);
   for (size_t i = 0; i < kTechniques; ++i) pixel.techniques[i] += static_cast<uint32_t>(counts.samples[i] - before[i]);
   if constexpr ((N & kNeedsBounces) != 0) {
-    const Fractions n = Mixture(plan.fractions, plan.samples, plan.weights).n;
+    const Fractions n = candidate ? Mixture(plan.fractions, plan.samples, plan.weights).n : Fractions{};
     for (int k = 0; k < more.count; ++k) {
       const Continuation& c = more.list[k];
       const uint64_t rays = counts.rays();

@@ -248,6 +248,15 @@ double errorRatio(const Scene& scene, RenderSettings s, Allocation rule) {
   return error(rule) / error(Allocation::kEqual);
 }
 
+// The largest ratio of `auto`, under the samplers whose points are spread least and most evenly.
+void expectOfAuto(const Scene& scene, RenderSettings s, double most) {
+  s.spp = 32;
+  for (SamplerType sampler : {SamplerType::kIndependent, SamplerType::kSobol}) {
+    s.sampler = sampler;
+    EXPECT_LT(errorRatio(scene, s, Allocation::kAuto), most) << name(sampler);
+  }
+}
+
 // A block under an even sky and a small lamp: cosine samples of the sky do not scatter, so that any scatter of the
 // *counts* shows, and `auto` must see that nothing is to be gained. With counts rounded at random the ratio for Sobol's
 // points was 1.9, now .99. Fixed seeds.
@@ -265,11 +274,7 @@ TEST(Render, CountsThemselvesAreNoNoise) {
   lookFrom(scene, 0.9f, 2, 24);
   RenderSettings s = quick();
   s.integrator = Integrator::kDirect;
-  s.spp = 32;
-  for (SamplerType sampler : {SamplerType::kIndependent, SamplerType::kSobol}) {
-    s.sampler = sampler;
-    EXPECT_LT(errorRatio(scene, s, Allocation::kAuto), 1.1) << name(sampler);
-  }
+  expectOfAuto(scene, s, 1.1);
 }
 
 // A soft box and lights that the light technique alone can meet: which of them a sample takes is most of the noise.
@@ -292,11 +297,7 @@ TEST(Render, AutoSeesLightsWithoutSize) {
   lookFrom(scene, 0.9f, 1.5f, 24);
   RenderSettings s = quick();
   s.integrator = Integrator::kDirect;
-  s.spp = 32;
-  for (SamplerType sampler : {SamplerType::kIndependent, SamplerType::kSobol}) {
-    s.sampler = sampler;
-    EXPECT_LT(errorRatio(scene, s, Allocation::kAuto), 1.02) << name(sampler);
-  }
+  expectOfAuto(scene, s, 1.02);
 }
 
 // A ball over a bright floor: most of its light comes by way of the floor, which no light sample finds. Driven by
@@ -314,11 +315,7 @@ TEST(Render, AutoSeesIndirectLight) {
   scene.lights = {lamp};
   lookFrom(scene, 1.3f, 1, 24);
   RenderSettings s = quick();
-  s.spp = 32;
-  for (SamplerType sampler : {SamplerType::kIndependent, SamplerType::kSobol}) {
-    s.sampler = sampler;
-    EXPECT_LT(errorRatio(scene, s, Allocation::kAuto), 1.02) << name(sampler);
-  }
+  expectOfAuto(scene, s, 1.02);
 }
 
 TEST(Render, CountsWhatItSpends) {
