@@ -611,14 +611,15 @@ class Reporter {
     for (size_t k = 0; k < groups_.size(); ++k) {
       const Group& g = groups_[k];
       // per seed, without the reference's share
-      const auto errors = [&](const Measured& x, const MetricInfo& metric) {
-        const double floor = floorOf(partOf(*x.reference, g), metric);
+      const Reference part = partOf(*m.reference, g);
+      const auto errors = [&](const Measured& x, const Reference& reference, const MetricInfo& metric) {
+        const double floor = floorOf(reference, metric);
         std::vector<double> perSeed;
         for (const Metrics& error : x.groups[k]) perSeed.push_back(error.*metric.value - floor);
         return perSeed;
       };
-      const std::vector<double> own = errors(m, metricOf(&Metrics::relMse)),
-                                base = errors(*base_, metricOf(&Metrics::relMse));
+      const std::vector<double> own = errors(m, part, metricOf(&Metrics::relMse)),
+                                base = errors(*base_, partOf(*base_->reference, g), metricOf(&Metrics::relMse));
       std::optional<Interval> ratio, errorRatio;
       if (&m != base_) {
         errorRatio = Bootstrap(commonSeeds_).interval([&](std::span<const uint32_t> draw) -> std::optional<double> {
@@ -638,7 +639,7 @@ class Reporter {
                  {"error_ratio", toJson(errorRatio)},
                  {"ratio", toJson(ratio)}};
       for (const MetricInfo& metric : allMetrics()) {
-        Interval mean = Bootstrap(m.runs->size()).mean(errors(m, metric));
+        Interval mean = Bootstrap(m.runs->size()).mean(errors(m, part, metric));
         for (double* x : {&mean.value, &mean.low, &mean.high}) *x = std::max(*x, 0.0);
         found[metric.name] = toJson(mean);
       }
