@@ -15,11 +15,11 @@ struct Surface {
   bool hasDiffuse() const { return maxComponent(diffuse) > 0; }
   bool hasSpecular() const { return maxComponent(specular) > 0; }
   // Where the rounding of float directions shows in E, and the lobe is evaluated in double: a slope is rounded by
-  // 6e-8/h_z, at grazing angles h_z is about alpha/(1 + |s|^2), and the narrower alpha is what that is to be small
-  // against.
-  bool needsDouble() const {
+  // 6e-8/h_z, at grazing angles h_z is about alpha/(1 + |s|^2), near the horizon only cos(theta_o), and the narrower
+  // alpha is what that is to be small against.
+  bool needsDouble(float cosThetaO) const {
     const float narrow = std::min(ax, ay), wide = std::max(ax, ay);
-    return narrow * narrow < 4e-6f * (1 + wide * wide);
+    return narrow * std::min(narrow, cosThetaO) < 4e-6f * (1 + wide * wide);
   }
 };
 

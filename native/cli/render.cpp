@@ -85,6 +85,7 @@ json statisticsJson(const std::string& path, const RenderSettings& settings, con
             {"total", total}}},
           {"cpu_seconds", {{"pilot", s.pilotCpuSeconds}, {"render", s.renderCpuSeconds}}},
           {"samples_per_pixel", film.samples},
+          {"pilot_in_image", s.allocated ? json(s.pilotKept) : json()},
           {"pixels", film.pixels.size()},
           {"camera_paths", c.cameraRays},
           {"samples",
@@ -246,9 +247,10 @@ Verb addRender(CLI::App& app) {
   app.add_option("SCENE", o->scene, "a .glb or .gltf file")->required();
   app.add_option("-o,--output", o->output, "the EXR to write")->required()->check(named());
   o->settings.add(app);
-  auto* spp = app.add_option("--spp", o->spp, "camera samples per pixel, the pilot's included")
-                  ->check(CLI::Range(1u, 1u << 24))
-                  ->capture_default_str();
+  auto* spp =
+      app.add_option("--spp", o->spp, "camera samples per pixel, the pilot's included if it is part of the image")
+          ->check(CLI::Range(1u, 1u << 24))
+          ->capture_default_str();
   app.add_option("--time", o->seconds, "stop after this many seconds instead, the pilot's included")
       ->check(between(0.001, 1e7))
       ->excludes(spp);

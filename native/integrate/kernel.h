@@ -18,7 +18,8 @@ struct KernelInput {
   Allocation rule;
   Integrand integrand;
   Weights weights;
-  SampleCost cost;  // for `auto`
+  const CandidateLists& candidates;  // for `auto`
+  SampleCost cost;                   // for `auto`
   int samplesPerHit, depth;
   bool lights;       // the light technique has something to aim at
   bool surfaceRays;  // rays of the surface's techniques can find light

@@ -26,7 +26,7 @@ inline TechniqueMask techniquesAt(const Surface& s, bool lights, bool surfaceRay
 template <uint32_t N>
 Rgb estimate(const RenderScene& scene, const Sampler& sampler, const Interaction& x, const HitPlan& plan,
              Counts& counts, HitRecord* record, Continuations& more) {
-  if ((N & kNeedsSpecular) != 0 && x.surface.needsDouble())
+  if ((N & kNeedsSpecular) != 0 && x.surface.needsDouble(dot(x.frame.z, x.wo)))
     return estimateHit<N, double>(scene, sampler, x, plan, counts, record, more);
   return estimateHit<N, float>(scene, sampler, x, plan, counts, record, more);
 }

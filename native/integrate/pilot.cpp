@@ -23,7 +23,7 @@ std::pair<HitMoments, CandidateSums> Pilot::smoothed(int x, int y) const {
 }
 
 std::vector<PixelFractions> Pilot::fractions(Allocation rule, Integrand integrand, TechniqueMask available,
-                                             float minimum, const SampleCost& cost) const {
+                                             float minimum, const CandidateLists& lists, const SampleCost& cost) const {
   std::vector<PixelFractions> result(pixels.size());
   tbb::parallel_for(0, height, [&](int y) {
     for (int x = 0; x < width; ++x) {
@@ -33,7 +33,7 @@ std::vector<PixelFractions> Pilot::fractions(Allocation rule, Integrand integran
       auto& [surface, a] = result[index];
       surface = pixels[index].surface;
       if (rule == Allocation::kAuto) {
-        a = chooseCandidate(sums, mask, cost);
+        a = chooseCandidate(sums, lists.of(mask), cost);
         continue;
       }
       a = integrand == Integrand::kJoint ? allocate(rule, m.specular, mask, minimum)

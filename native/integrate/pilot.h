@@ -49,7 +49,7 @@ struct Pilot {
 
   // Fractions per pixel of the techniques that the scene has (`available`).
   std::vector<PixelFractions> fractions(Allocation rule, Integrand integrand, TechniqueMask available, float minimum,
-                                        const SampleCost& cost) const;
+                                        const CandidateLists& lists, const SampleCost& cost) const;
 };
 
 }  // namespace wardmis

@@ -14,6 +14,12 @@
 namespace wardmis {
 namespace {
 
+constexpr uint32_t kWhole = 16;  // a pilot of this part of a render, or less, is little
+
+uint32_t targetOf(const RenderSettings& s) { return s.seconds > 0 ? ~uint32_t{0} : s.spp; }
+// Of a render of `target` samples: at most half of them, and none of one sample.
+uint32_t pilotOf(const RenderSettings& s, uint32_t target) { return std::min(s.pilotSpp, target / 2); }
+
 // Calls a function every quarter of a second from a thread of its own, until destroyed.
 class Ticker {
  public:
@@ -75,7 +81,7 @@ class Run {
       if (!pass(chunk, pilot)) return;
       const double after = seconds(), perSample = (after - before) / chunk;
       report(pilot != nullptr, 0);
-      checkpoint();
+      if (pilot == nullptr || extra_ == 0) checkpoint();
       if (observer_.image && pilot == nullptr) observer_.image(film_);
       if (settings_.seconds > 0 && after + perSample > settings_.seconds) return;
       // passes of about half a second: long enough to cost nothing, short enough to watch
@@ -84,6 +90,10 @@ class Run {
       chunk = static_cast<uint32_t>(next);
     }
   }
+
+  // Before a pilot of `samples` that are not to be part of the image, and when they leave it.
+  void expectExtra(uint32_t samples) { extra_ = samples; }
+  void throwAway() { film_ = setup_.film(); }
 
   Counts counts() {
     Counts sum;
@@ -110,8 +120,9 @@ class Run {
     p.samples = film_.samples;
     p.of = settings_.seconds > 0 ? 0 : settings_.spp;
     p.seconds = seconds();
+    const double done = double(film_.samples) + (pilot ? 0 : extra_);
     p.fraction = settings_.seconds > 0 ? std::min(1.0, p.seconds / settings_.seconds)
-                                       : (film_.samples + partial) / settings_.spp;
+                                       : (done + partial) / (double(settings_.spp) + extra_);
     p.left = settings_.seconds > 0 ? std::max(0.0, settings_.seconds - p.seconds)
              : p.fraction > 0      ? p.seconds * (1 - p.fraction) / p.fraction
                                    : 0;
@@ -122,6 +133,7 @@ class Run {
   const RenderObserver& observer_;
   const RenderSetup& setup_;
   FilmBuffer& film_;
+  uint32_t extra_ = 0;  // samples that are not part of the image
   Clocks start_;
   tbb::enumerable_thread_specific<Counts> counts_;
 };
@@ -147,9 +159,7 @@ FilmBuffer renderInArena(const BuiltScene& built, const RenderSettings& settings
   stats.emissiveTriangles = built.emitters.emissiveTriangles();
   stats.threads = threadsOf(settings.threads);
   stats.techniques = setup.techniques;
-  const uint32_t target = settings.seconds > 0 ? ~uint32_t{0} : settings.spp;
-  // The pilot takes at most half of the samples; a render of one sample has none.
-  const uint32_t pilotSpp = std::min(settings.pilotSpp, target / 2);
+  const uint32_t target = targetOf(settings), pilotSpp = pilotOf(settings, target), apart = pilotApart(settings);
   stats.allocated = needsMoments(settings.allocation) && (setup.needs & kNeedsAllocation) != 0 && pilotSpp > 0;
   if (needsMoments(settings.allocation) && (setup.needs & kNeedsAllocation) != 0 && pilotSpp == 0)
     stats.leftOut.emplace_back("no samples for a pilot: counts are equal");
@@ -161,6 +171,10 @@ FilmBuffer renderInArena(const BuiltScene& built, const RenderSettings& settings
   std::vector<PixelFractions> perPixel;
   if (stats.allocated) {
     if (settings.costFrom == CostFrom::kMeasured) cost = measureCost(built, settings).perSample;
+    if (apart > 0) {
+      run.expectExtra(apart);
+      setup.reseed(~settings.seed);  // fractions must not depend on the points that they are used for
+    }
     Pilot pilot(buffer.width, buffer.height, settings.allocation);
     if (settings.costFrom == CostFrom::kRays) {
       run.until(1, &pilot);
@@ -168,13 +182,18 @@ FilmBuffer renderInArena(const BuiltScene& built, const RenderSettings& settings
     }
     run.until(pilotSpp, &pilot);
     if (!run.stopped()) {
-      perPixel = pilot.fractions(settings.allocation, settings.integrand, setup.techniques, settings.minFraction, cost);
+      perPixel = pilot.fractions(settings.allocation, settings.integrand, setup.techniques, settings.minFraction,
+                                 setup.input.candidates, cost);
       setup.input.perPixel = &perPixel;
     }
     stats.cost = cost;
     const Clocks pilotTime = run.clocks();
     stats.pilotSeconds = pilotTime.wall;
     stats.pilotCpuSeconds = pilotTime.cpu;
+    const bool tooLong = settings.seconds > 0 && pilotTime.wall * kWhole > settings.seconds;
+    stats.pilotKept = apart == 0 || run.stopped() || tooLong;
+    if (apart > 0) setup.reseed(settings.seed);
+    if (!stats.pilotKept) run.throwAway();
   }
   run.until(target, nullptr);
   const Clocks time = run.clocks();
@@ -185,6 +204,12 @@ FilmBuffer renderInArena(const BuiltScene& built, const RenderSettings& settings
 }
 
 }  // namespace
+
+uint32_t pilotApart(const RenderSettings& s) {
+  const uint32_t target = targetOf(s), pilot = pilotOf(s, target);
+  const bool little = pilot <= target / kWhole;
+  return s.allocation == Allocation::kAuto && s.sampler == SamplerType::kSobol && little ? pilot : 0;
+}
 
 FilmBuffer render(const BuiltScene& built, const RenderSettings& settings, Statistics& statistics,
                   const RenderObserver& observer) {

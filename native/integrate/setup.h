@@ -31,6 +31,7 @@ struct RenderSetup {
   RenderSetup& operator=(const RenderSetup&) = delete;
 
   FilmBuffer film() const;  // an empty one, of the border's size
+  void reseed(uint64_t seed) { sampler_ = sampler_.reseeded(seed); }
 
   uint32_t needs = 0, kernelNeeds = 0;
   TechniqueMask techniques = 0;  // that the scene has
@@ -40,6 +41,7 @@ struct RenderSetup {
   CameraRays camera_;
   PixelFilter filter_;
   Sampler sampler_;
+  CandidateLists candidates_;
 
  public:
   KernelInput input;

@@ -61,7 +61,7 @@ Rgb cameraSample(const KernelInput& in, const Ray& ray, uint32_t pixelKey, uint3
   std::optional<HitRecord> record;
   std::optional<CandidateHit> candidate;
   if (pilot != nullptr && follows) {
-    if (candidates != nullptr) candidate.emplace(candidatesOf(mask));
+    if (candidates != nullptr) candidate.emplace(in.candidates.of(mask));
     record.emplace(HitRecord{pilot->moments, candidate ? &*candidate : nullptr});
   }
   sum += estimate<N>(world, in.sampler, x, plan, counts, record ? &*record : nullptr, more);

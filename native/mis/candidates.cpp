@@ -9,23 +9,19 @@
 
 namespace wardmis {
 
-const CandidateList& candidatesOf(TechniqueMask available) {
-  static const auto lists = [] {
-    std::array<CandidateList, kAllTechniques + 1> all{};
-    const std::vector<Densities> three = candidates(kTechniques, 4, 2);
-    for (unsigned mask = 1; mask <= kAllTechniques; ++mask)
-      for (size_t c = 0; c < kCandidates; ++c) {
-        const Fractions a = restrict({float(three[c][0]), float(three[c][1]), float(three[c][2])}, TechniqueMask(mask));
-        for (size_t k = 0; k < kTechniques; ++k) all[mask].a[k][c] = a[k];
-      }
-    return all;
-  }();
-  return lists[available & kAllTechniques];
+CandidateLists::CandidateLists(int samplesPerHit) {
+  constexpr uint32_t kParts = 4;  // of a sample
+  const std::vector<Densities> three = candidates(kTechniques, 4, 2);
+  for (unsigned mask = 1; mask <= kAllTechniques; ++mask)
+    for (size_t c = 0; c < kCandidates; ++c) {
+      Fractions a = restrict({float(three[c][0]), float(three[c][1]), float(three[c][2])}, TechniqueMask(mask));
+      if (c > 0) a = wholeCounts(a, samplesPerHit, kParts);
+      for (size_t k = 0; k < kTechniques; ++k) lists_[mask].a[k][c] = a[k];
+    }
 }
 
-Fractions chooseCandidate(const CandidateSums& sums, TechniqueMask available, const SampleCost& cost) {
+Fractions chooseCandidate(const CandidateSums& sums, const CandidateList& list, const SampleCost& cost) {
   constexpr float kLeastHits = 8;  // fewer say nothing of their own noise
-  const CandidateList& list = candidatesOf(available);
   if (!(sums.hits >= kLeastHits)) return list.at(0);
   const auto objective = [&](int c) {
     const Fractions a = list.at(c);

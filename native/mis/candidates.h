@@ -13,8 +13,17 @@ struct CandidateList {
   float a[kTechniques][kCandidates];  // fractions
   Fractions at(int c) const { return {a[0][c], a[1][c], a[2][c]}; }
 };
-// Restricted to the techniques that a hit has.
-const CandidateList& candidatesOf(TechniqueMask available);
+// The candidates of a render with so many samples at a hit. All but the equal counts are rounded to quarters of a
+// sample, so that over 2^k hits a technique's points are a few powers of two: as Sobol's want to be.
+class CandidateLists {
+ public:
+  explicit CandidateLists(int samplesPerHit);
+  // Restricted to the techniques that a hit has.
+  const CandidateList& of(TechniqueMask available) const { return lists_[available & kAllTechniques]; }
+
+ private:
+  std::array<CandidateList, kAllTechniques + 1> lists_{};
+};
 
 // What a hit costs, in any unit: a share of the hit itself for each of its samples, and a sample of each technique.
 struct SampleCost {
@@ -93,6 +102,6 @@ class CandidateHit {
 
 // The candidate whose gain in predicted variance x cost over equal counts, less the gain's standard error, is the
 // largest; equal counts where none is above nothing, or where hits are too few to tell.
-Fractions chooseCandidate(const CandidateSums& sums, TechniqueMask available, const SampleCost& cost);
+Fractions chooseCandidate(const CandidateSums& sums, const CandidateList& list, const SampleCost& cost);
 
 }  // namespace wardmis

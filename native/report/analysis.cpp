@@ -364,7 +364,9 @@ class Reporter {
     if (!bySeconds) return {};
     const bool independent =
         !m.configuration->external && m.configuration->settings.sampler == SamplerType::kIndependent;
-    const SlopeVerdict v = judgeSlope(*bySeconds, bySamples, m.seeds.biased(), m.seeds.tail.heavy(), independent);
+    const bool allocated = !m.configuration->external && needsMoments(m.configuration->settings.allocation);
+    const SlopeVerdict v =
+        judgeSlope(*bySeconds, bySamples, m.seeds.biased(), m.seeds.tail.heavy(), independent, allocated);
     return {{"value", bySeconds->value},
             {"low", bySeconds->low},
             {"high", bySeconds->high},
@@ -553,7 +555,8 @@ class Reporter {
       for (size_t i = 0; i < m.fractions[t].size(); ++i) present[i] += (e_.survey.pixels[i].techniques >> t & 1) != 0;
     size_t sampled = 0, clamped = 0, starved = 0;
     std::array<double, kTechniques> mean{};
-    const double spp = double(e_.checkpoints.back()), pilot = std::min(double(s.pilotSpp), spp / 2);
+    const double spp = double(e_.checkpoints.back());
+    const double pilot = pilotApart(s) > 0 ? 0 : std::min(double(s.pilotSpp), spp / 2);
     for (size_t i = 0; i < pixels; ++i) {
       double sum = 0;
       for (size_t t = 0; t < kTechniques; ++t) sum += m.fractions[t].empty() ? 0 : double(m.fractions[t][i]);
@@ -677,6 +680,7 @@ class Reporter {
             {"reference", m.reference->estimates},
             {"curve", curve(m)},
             {"pilot_seconds", c.external ? json() : json(pilot)},
+            {"pilot_apart", c.external || !(pilot > 0) ? 0 : pilotApart(c.settings)},
             {"slope", slopeOf(m)},
             {"bias", biasOf(m)},
             {"tail",

@@ -112,7 +112,9 @@ std::vector<std::string> finding(const json& r) {
     if (c["name"] == base || c["time_to_target"]["verdict"] != "faster") continue;
     const std::string name = c["name"];
     if (c["equal_samples"].is_object() && c["equal_samples"]["ratio"].is_object())
-      errors.push_back(fmt::format("{} {}", name, interval(c["equal_samples"]["ratio"])));
+      errors.push_back(fmt::format(
+          "{} {}{}", name, interval(c["equal_samples"]["ratio"]),
+          c["pilot_apart"] > 0 ? fmt::format(" (its pilot of {} more not counted)", c["pilot_apart"].get<int>()) : ""));
     // a squared error is that of the few worst pixels; what most pixels show may say otherwise
     const json &own = c["curve"].back(), &other = baseline["curve"].back();
     if (own["spp"] == other["spp"] && own["mape"]["low"] > other["mape"]["high"])

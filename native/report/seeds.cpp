@@ -179,7 +179,7 @@ BiasTest compareConverged(const Reference& a, const Reference& b) {
 }
 
 SlopeVerdict judgeSlope(const Interval& s, const std::optional<Interval>& bySamples, bool biased, bool heavy,
-                        bool independent) {
+                        bool independent, bool allocated) {
   const std::string found = fmt::format("{:.2f} [{:.2f}, {:.2f}]", s.value, s.low, s.high);
   if (s.high - s.low > kUnsureSlope) return {"none", "none", found + ": too unsure to say anything"};
   if (s.contains(-1)) return {"none", "none", found + ": as Monte Carlo estimates without bias have it"};
@@ -187,7 +187,13 @@ SlopeVerdict judgeSlope(const Interval& s, const std::optional<Interval>& bySamp
     if (bySamples && bySamples->contains(-1))
       return {"steeper", "overhead",
               found + ": steeper against time than against samples, since the pilot's time is spread over ever more"};
-    if (!independent) return {"steeper", "sampler", found + ": steeper, since the sampler's points are spread evenly"};
+    if (!independent)
+      return {"steeper", "sampler",
+              found + ": steeper, since the sampler's points are spread evenly" +
+                  (allocated ? " (and since the pilot, with other counts, is an ever smaller part)" : "")};
+    if (allocated)
+      return {"steeper", "allocation",
+              found + ": steeper, since the pilot, with other counts and time of its own, is an ever smaller part"};
     return {"steeper", "unclear", found + ": steeper than independent samples should be, and the cause is not found"};
   }
   if (biased && heavy)

@@ -57,11 +57,12 @@ BiasTest compareConverged(const Reference& a, const Reference& b);
 // Why a slope is not -1.
 struct SlopeVerdict {
   const char* flag = "none";   // none, steeper, shallower
-  const char* cause = "none";  // none, bias, heavy tail, both, sampler, overhead, unclear
+  const char* cause = "none";  // none, bias, heavy tail, both, sampler, overhead, allocation, unclear
   std::string text;
 };
-// bySamples: the slope against samples instead of seconds; independent: the sampler's points are.
+// bySamples: the slope against samples instead of seconds; independent: the sampler's points are;
+// allocated: by a pilot of equal counts.
 SlopeVerdict judgeSlope(const Interval& slope, const std::optional<Interval>& bySamples, bool biased, bool heavy,
-                        bool independent);
+                        bool independent, bool allocated);
 
 }  // namespace wardmis

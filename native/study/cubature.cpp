@@ -87,7 +87,10 @@ std::vector<double> Cubature::refine(const Integrands& integrands, double tolera
   const Rule& r = rule();
   std::vector<double> total(n, 0), h(n);
   const auto measure = [&](Cell& cell) {
-    std::vector<double> inU(n, 0), inV(n, 0), size(n, 0);
+    // differences of the two rules along each line of nodes: summed over the lines with their signs, they may cancel
+    // where the integral's error does not
+    std::vector<std::array<double, kNodes>> lineU(n), lineV(n);
+    std::vector<double> size(n, 0);
     cell.value.assign(n, 0), cell.error.assign(n, 0), cell.difference.assign(n, 0);
     for (size_t m = 0; m < cell.points.size(); ++m) {
       const Point& p = cell.points[m];
@@ -96,7 +99,7 @@ std::vector<double> Cubature::refine(const Integrands& integrands, double tolera
       const double gu = r.gauss[j] / r.kronrod[j], gv = cell.rows() == 1 ? 1 : r.gauss[i] / r.kronrod[i];
       for (size_t k = 0; k < n; ++k) {
         const double v = p.w * h[k];
-        cell.value[k] += v, size[k] += std::abs(v), inU[k] += v * gu, inV[k] += v * gv;
+        cell.value[k] += v, size[k] += std::abs(v), lineU[k][i] += v * (gu - 1), lineV[k][j] += v * (gv - 1);
       }
     }
     double worstU = 0, worstV = 0;
@@ -104,11 +107,17 @@ std::vector<double> Cubature::refine(const Integrands& integrands, double tolera
       if (!(size[k] > 0)) continue;
       // QUADPACK's estimate: the difference of the two rules is the error of the lower one
       const auto estimate = [&](double difference) {
-        return size[k] * std::pow(std::min(1.0, 200 * std::abs(difference) / size[k]), 1.5);
+        return size[k] * std::pow(std::min(1.0, 200 * difference / size[k]), 1.5);
       };
-      const double eu = estimate(cell.value[k] - inU[k]), ev = estimate(cell.value[k] - inV[k]);
+      const auto sum = [](const auto& lines) {
+        double all = 0;
+        for (double line : lines) all += std::abs(line);
+        return all;
+      };
+      const double inU = sum(lineU[k]), inV = sum(lineV[k]);
+      const double eu = estimate(inU), ev = estimate(inV);
       cell.error[k] = eu + ev;
-      cell.difference[k] = std::max(std::abs(cell.value[k] - inU[k]), std::abs(cell.value[k] - inV[k]));
+      cell.difference[k] = std::max(inU, inV);
       const double scale = std::max(std::abs(total[k]), size[k]);
       worstU = std::max(worstU, eu / scale), worstV = std::max(worstV, ev / scale);
     }

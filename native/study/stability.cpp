@@ -43,10 +43,10 @@ Vec3<double> outgoing(const StabilityCell& cell) {
   return {s * std::cos(phi), s * std::sin(phi), cell.cosO};
 }
 
-bool samplesInFloat(const StudyInput& in) {
+bool samplesInFloat(const StudyInput& in, Vec3<double> wo) {
   Surface s;
   s.ax = static_cast<float>(in.alphaX), s.ay = static_cast<float>(in.alphaY);
-  return !s.needsDouble();
+  return !s.needsDouble(static_cast<float>(wo.z));
 }
 
 StabilityResult measure(const StabilityCell& cell, const StabilitySubject& subject, uint64_t seed, uint64_t index) {
@@ -63,7 +63,7 @@ StabilityResult measure(const StabilityCell& cell, const StabilitySubject& subje
 
   LobeReport lobe;
   integrateLobe(subject.extended, in, lobe);
-  lobe.single = samplesInFloat(in);
+  lobe.single = samplesInFloat(in, wo);
   lobe.pDouble = chiSquareOfLobe(subject.twice, subject.extended, in, cell.sampler, stream(2), lobe.largestWeight);
   if (lobe.single)
     lobe.pSingle = chiSquareOfLobe(subject.single, subject.extended, in, cell.sampler, stream(3), lobe.largestWeight);

@@ -70,6 +70,9 @@
     return `${minus(mantissa)} × 10${superscript(Number(exponent))}`;
   }
 
+  // Numbers of a text, "4.6e-06", as those of the page.
+  const typeset = (text) => text.replace(/\b(\d(?:\.\d+)?)e([+-]\d+)\b/g, (_, mantissa, exponent) => `${mantissa} × 10${superscript(Number(exponent))}`);
+
   // "0.620 [0.580, 0.660]" as two parts: the mean to three digits, its bounds to the same place.
   function intervalParts(i) {
     if (!known(i)) return [kNone, "", ""];
@@ -273,7 +276,7 @@
       h("div", { class: "head" }, h("h1", {}, report.title), themeButton()),
       h("p", { class: "when" }, parts.filter((p) => p).join(" · ")),
       report.complete === false ? h("p", { class: "notice" }, "This study ended before its time: the figures are those of the runs that were done.") : null,
-      h("p", { class: "finding" }, report.finding.join(" ")));
+      h("p", { class: "finding" }, report.finding.map(typeset).join(" ")));
   }
 
   // ---- 2. Error against time -----------------------------------------------------------------------------------------
@@ -463,9 +466,10 @@
         table(title(of[0][field]), [["Configuration"], [at[0], "number"], [metricLabel(report.metric), "number"], ["Ratio", "number"]],
           of.map((c) => [namedBriefly(c), at[1](c[field], of[0][field]), interval(c[field].error), c === baseline ? "baseline" : ratio(c[field].ratio)])));
     };
+    const apart = configurations.filter((c) => c.pilot_apart > 0).map((c) => ` The pilot of ${c.name}, ${integer(c.pilot_apart)} camera samples per pixel more, is not in its image; its time and rays count.`).join("");
     const parts = [
       one("equal_time", (e) => `At ${number(e.seconds)} s`, `Errors read from the curves at the same ${clock} time, and their ratios to the baseline’s: under 1 is better.`, ["s", (e, first) => (e.seconds === first.seconds ? kNone : number(e.seconds))]),
-      one("equal_samples", (e) => `At ${integer(e.spp)} samples per pixel`, "Errors at the same number of samples, whatever they cost, and their ratios to the baseline’s.", ["spp", (e, first) => (e.spp === first.spp ? kNone : integer(e.spp))]),
+      one("equal_samples", (e) => `At ${integer(e.spp)} samples per pixel`, `Errors at the same number of samples in the image, whatever they cost, and their ratios to the baseline’s.${apart}`, ["spp", (e, first) => (e.spp === first.spp ? kNone : integer(e.spp))]),
     ].filter(known);
     return parts.length ? section("equal", "At equal time, and at equal samples", h("div", { class: parts.length > 1 ? "pair" : null }, parts)) : null;
   }
@@ -929,7 +933,7 @@
     const split = (o) => (o && sum(o) > 0 ? Object.entries(o).map(([k, v]) => `${k} ${percent(v / sum(o))}`).join(", ") : kNone);
     const total = of.length ? [
       h("h3", {}, "By allocation"),
-      read("A gain can come from less variance or from cheaper samples; variance × cost is what both leave. Compare the columns with those of the baseline to see which it was."),
+      read("A gain can come from less variance or from cheaper samples; variance × cost is what both leave. Compare the columns with those of the baseline to see which it was. Pilot: wall seconds of a run that went to the samples from which its counts follow; they are part of its time."),
       table("cost by allocation", [["Configuration"], ["ns a sample", "number"], ["Rays a path", "number"], ["Evaluations", "number"], ["Samples", "number"], ["Rays", "number"], ["Pilot, s", "number"], [`${product} × CPU s`, "number"], [`${product} × rays`, "number"]],
         of.map((c) => [named(c), number(c.cost.ns_per_sample), number(c.cost.rays_per_path), known(c.cost.evaluations) ? integer(c.cost.evaluations) : kNone,
           known(sum(c.cost.samples)) ? integer(sum(c.cost.samples)) : kNone, known(sum(c.cost.rays)) ? integer(sum(c.cost.rays)) : kNone, number(c.pilot_seconds),

@@ -63,9 +63,9 @@ TEST(Surface, KnowsItsParts) {
   s.diffuse = {0, 0, 0.1f};
   s.specular = {0.1f, 0, 0};
   EXPECT_TRUE(s.hasDiffuse() && s.hasSpecular());
-  EXPECT_FALSE(s.needsDouble());
+  EXPECT_FALSE(s.needsDouble(1));
   s.ay = 1e-3f;
-  EXPECT_TRUE(s.needsDouble());
+  EXPECT_TRUE(s.needsDouble(1));
 }
 
 // Why needsDouble() draws the line where it does: above it, the rounding of a float direction (half an ulp of a unit
@@ -91,10 +91,10 @@ TEST(Surface, FloatDirectionsSufficeAboveTheLine) {
 // As `wardmis stability` finds: float directions carry the lobe but for sharp ones, and wide ones that are sharp
 // across.
 TEST(Surface, NeedsDouble) {
-  const auto needs = [](float ax, float ay) {
+  const auto needs = [](float ax, float ay, float cosThetaO = 1) {
     Surface s;
     s.ax = ax, s.ay = ay;
-    return s.needsDouble();
+    return s.needsDouble(cosThetaO);
   };
   EXPECT_TRUE(needs(1e-4f, 1e-4f));
   EXPECT_TRUE(needs(1.9e-3f, 0.5f));
@@ -102,6 +102,11 @@ TEST(Surface, NeedsDouble) {
   EXPECT_TRUE(needs(0.01f, 10));
   EXPECT_TRUE(needs(10, 0.01f));
   EXPECT_FALSE(needs(0.1f, 10));
+  // at 89.99 and 89.9 degrees
+  EXPECT_TRUE(needs(0.01f, 0.01f, 1.75e-4f));
+  EXPECT_TRUE(needs(3, 0.01f, 1.75e-4f));
+  EXPECT_FALSE(needs(0.01f, 0.01f, 1.75e-3f));
+  EXPECT_FALSE(needs(0.1f, 0.1f, 1.75e-4f));
 }
 
 }  // namespace

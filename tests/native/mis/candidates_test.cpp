@@ -12,26 +12,30 @@ namespace {
 
 using namespace test;
 
+constexpr int kSamples = 12;  // at a hit
+const CandidateLists lists(kSamples);
+const CandidateList& all = lists.of(kAllTechniques);
+
 // The choice from a pilot of so many hits, each of one sample a technique.
 Fractions choose(const WardCase& c, int hits, const Fractions& cost, uint64_t seed) {
   Random random(seed);
   const Mixture equal({1.0f / 3, 1.0f / 3, 1.0f / 3}, 3, Weights::kBalance);
   CandidateSums sums;
   for (int h = 0; h < hits; ++h) {
-    CandidateHit hit(candidatesOf(kAllTechniques));
+    CandidateHit hit(all);
     for (int i = 0; i < 3; ++i) {
       const Sampled s = c.sample(i, random);
       hit.add(s.f, s.p, equal.n, kAllTechniques);
     }
     hit.addTo(sums, {0, cost});
   }
-  return chooseCandidate(sums, kAllTechniques, {0, cost});
+  return chooseCandidate(sums, all, {0, cost});
 }
 
 // Measured N Var of one estimate with these fractions.
 double variance(const WardCase& c, const Fractions& a, uint64_t seed) {
   Random random(seed);
-  const int n = 33;
+  const int n = 4 * kSamples;  // whole counts: rounded at random, they would be noise of their own
   const Mixture mixture(a, n, Weights::kBalance);
   Estimate e;
   for (int k = 0; k < 4000; ++k) e.add(estimate(c, mixture, systematicCounts(a, n, random.square<float>().x), random));
@@ -40,13 +44,26 @@ double variance(const WardCase& c, const Fractions& a, uint64_t seed) {
 
 TEST(Candidates, EqualOnesComeFirstAndAllSumToOne) {
   for (unsigned mask = 1; mask <= kAllTechniques; ++mask) {
-    const CandidateList& list = candidatesOf(static_cast<TechniqueMask>(mask));
+    const CandidateList& list = lists.of(static_cast<TechniqueMask>(mask));
     EXPECT_EQ(list.at(0), restrict({1, 1, 1}, static_cast<TechniqueMask>(mask)));
     for (int c = 0; c < kCandidates; ++c) {
       const Fractions a = list.at(c);
       EXPECT_NEAR(double(a[0]) + double(a[1]) + double(a[2]), 1, 1e-6);
       for (int k = 0; k < kTechniques; ++k) EXPECT_EQ(a[static_cast<size_t>(k)] > 0, (mask >> k & 1u) != 0);
     }
+  }
+}
+
+// Sobol's points want counts that are few powers of two: quarters of a sample, whatever the samples of a hit.
+TEST(Candidates, AreWholeQuartersOfASample) {
+  for (int samples : {1, 2, 3, 4, 7, 16, 256}) {
+    const CandidateLists some(samples);
+    for (unsigned mask = 1; mask <= kAllTechniques; ++mask)
+      for (int c = 1; c < kCandidates; ++c)
+        for (float share : some.of(static_cast<TechniqueMask>(mask)).at(c)) {
+          const float quarters = 4 * static_cast<float>(samples) * share;
+          EXPECT_NEAR(quarters, std::round(quarters), 1e-3) << samples << " samples, techniques " << mask;
+        }
   }
 }
 
@@ -66,8 +83,8 @@ TEST(Candidates, BeatEqualCountsWhereTheoryDoes) {
 }
 
 TEST(Candidates, FallBackToEqualCountsWhereTheGainIsNoise) {
-  const Fractions equal = candidatesOf(kAllTechniques).at(0);
-  EXPECT_EQ(chooseCandidate({}, kAllTechniques, {1, 1, 1}), equal);
+  const Fractions equal = all.at(0);
+  EXPECT_EQ(chooseCandidate({}, all, {1, 1, 1}), equal);
   int fallen = 0;
   for (const auto& json : golden()["three_technique_cases"])
     for (uint64_t seed = 0; seed < 10; ++seed) fallen += choose(WardCase(json), 1, {1, 1, 1}, seed) == equal ? 1 : 0;
@@ -77,13 +94,12 @@ TEST(Candidates, FallBackToEqualCountsWhereTheGainIsNoise) {
 // The sums are what they are said to be: of a light sample that serves two integrands, E[(f_s/q_s + f_d/q_d)^2].
 // Lobe, cosine and light are uniform on [0, 1] here, with f_s = 2x and f_d = 1 + x.
 TEST(Candidates, PredictTheVarianceOfSplitIntegrands) {
-  const CandidateList& list = candidatesOf(kAllTechniques);
   const Fractions n{1, 1, 1}, p{1, 1, 1};
   Random random(4);
   CandidateSums sums;
   const int hits = 100000;
   for (int h = 0; h < hits; ++h) {
-    CandidateHit hit(list);
+    CandidateHit hit(all);
     for (int t = 0; t < 3; ++t) {
       const float x = random.square<float>().x, fs = 2 * x, fd = 1 + x;
       if (t != kCosine) hit.add(fs, p, n, kSpecularTechniques);
@@ -93,7 +109,7 @@ TEST(Candidates, PredictTheVarianceOfSplitIntegrands) {
     hit.addTo(sums, {1, 1, 1});
   }
   for (int c = 0; c < kCandidates; ++c) {
-    const Fractions a = list.at(c);
+    const Fractions a = all.at(c);
     const double s = 1.0 / double(a[0] + a[2]), d = 1.0 / double(a[1] + a[2]);
     // E f_s^2 = 4/3, E f_d^2 = 7/3, E f_s f_d = 5/3; E f_s = 1, E f_d = 3/2
     const double second = s * 4 / 3 + d * 7 / 3 + 2 * double(a[2]) * s * d * 5 / 3;

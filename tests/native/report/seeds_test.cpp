@@ -104,8 +104,9 @@ TEST(Seeds, ConvergedImagesAreCompared) {
 
 TEST(Seeds, SlopesAreJudged) {
   const auto cause = [](double low, double high, bool biased, bool heavy, bool independent,
-                        std::optional<Interval> bySamples = {}) {
-    return std::string(judgeSlope({(low + high) / 2, low, high}, bySamples, biased, heavy, independent).cause);
+                        std::optional<Interval> bySamples = {}, bool allocated = false) {
+    return std::string(
+        judgeSlope({(low + high) / 2, low, high}, bySamples, biased, heavy, independent, allocated).cause);
   };
   EXPECT_EQ(cause(-1.05, -0.97, true, true, true), "none");
   EXPECT_EQ(cause(-0.9, -0.8, true, false, true), "bias");
@@ -115,6 +116,7 @@ TEST(Seeds, SlopesAreJudged) {
   EXPECT_EQ(cause(-1.4, -1.2, false, false, false), "sampler");
   EXPECT_EQ(cause(-1.4, -1.2, false, false, true), "unclear");
   EXPECT_EQ(cause(-1.4, -1.2, false, false, true, Interval{-1, -1.1, -0.9}), "overhead");
+  EXPECT_EQ(cause(-1.4, -1.2, false, false, true, {}, true), "allocation");
 }
 
 }  // namespace
