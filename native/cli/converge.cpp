@@ -112,14 +112,15 @@ int run(const Options& o, const std::string& command) {
   };
   const Experiment e = measure(built, plan, observer);
   if (stop.load() == Stop::kDiscard)
-    throw Error(ExitCode::kCancelled, "stopped; what is done is kept in " + o.folder,
+    throw Error(ExitCode::kCancelled,
+                "stopped; the parts of the reference and the runs that were finished are kept in " + o.folder,
                 "the same command goes on from there");
   const auto phase = [&](double part) {
     observer.progress({"report", "", 0, 0, 1, 0.98 + 0.02 * part, wallSeconds() - start, 0});
   };
   phase(0);
   if (!e.complete && std::all_of(e.runs.begin(), e.runs.end(), [](const auto& runs) { return runs.empty(); }))
-    throw Error(ExitCode::kCancelled, "stopped before the first runs; what is done is kept in " + o.folder,
+    throw Error(ExitCode::kCancelled, "stopped before the first run was finished; what was is kept in " + o.folder,
                 "the same command goes on from there");
   const Analysis analysis = analyse(e, phase);
   writeReport(o.folder, analysis);

@@ -110,14 +110,17 @@ class Study {
 
   void check() {
     checkNames();
-    if (!plan_.reference.empty()) given("");
+    if (!plan_.reference.empty()) given();
     for (const fs::path& manifest : plan_.external) readManifest(manifest);
     identify(false);
   }
 
   Experiment run() {
     checkNames();
-    for (const fs::path& manifest : plan_.external) readManifest(manifest);  // before the runs take their time
+    // before the runs take their time, and before the folder says what it is a study of
+    for (const fs::path& manifest : plan_.external) readManifest(manifest);
+    std::optional<Reference> reference;
+    if (!plan_.reference.empty()) reference = given();
     makeFolder(plan_.folder);
     const FolderLock lock(plan_.folder);
     identify(true);
@@ -127,7 +130,7 @@ class Study {
     RenderSettings s = e.configurations[e.baseline].settings;
     s.threads = plan_.threads, s.seed = kReferenceSeed - 1, s.spp = std::max(maxSpp_, kSurveySamples);
     for (Configuration& c : e.configurations) describeKernel(c);
-    references();
+    references(std::move(reference));
     if (!stopped()) {
       e.survey = survey(built_, s, kSurveySamples);
       s.spp = std::max(s.spp, 150u);  // three rounds of measuring
@@ -190,6 +193,7 @@ class Study {
       if (maxSpp_ < 2 || referenceSpp_ < 1)
         throw Error(ExitCode::kFile, path.string() + ": does not say how many samples the runs have",
                     "delete the folder, or choose another");
+      if (found.contains("started") && found["started"].is_string()) experiment_.started = found["started"];
       return;
     }
     for (const char* left : {"runs", "reference"})
@@ -202,6 +206,7 @@ class Study {
     choose();
     identity["chosen_spp"] = maxSpp_;
     identity["reference_spp"] = referenceSpp_;
+    identity["started"] = e.started;
     writeFile(path, identity.dump(2) + '\n');
   }
 
@@ -270,7 +275,7 @@ class Study {
     c.leftOut = leftOut(built_.scene, setup.needs, built_.emitters);
   }
 
-  void references() {
+  void references(std::optional<Reference> given) {
     Experiment& e = experiment_;
     std::vector<std::string> order;  // the baseline's first
     order.push_back(estimates(e.configurations[e.baseline].settings));
@@ -280,8 +285,9 @@ class Study {
     const auto targets = referenceTargets();
     for (const std::string& key : order) {
       if (stopped()) return;
-      if (!plan_.reference.empty()) {
-        e.references.push_back(given(key));
+      if (given) {
+        given->estimates = key;
+        e.references.push_back(std::move(*given));
         if (order.size() > 1 && observer_.warn)
           observer_.warn(
               "the configurations estimate different light, and all are held against the one reference given");
@@ -325,9 +331,8 @@ class Study {
                       r.path.string()));
   }
 
-  Reference given(const std::string& key) const {
+  Reference given() const {
     Reference r;
-    r.estimates = key;
     r.path = plan_.reference;
     r.image = readRgb(plan_.reference);
     if (r.image.width != experiment_.width || r.image.height != experiment_.height)
@@ -416,15 +421,9 @@ class Study {
       makeFolder(folder);
       const fs::path file = folder / fmt::format("seed-{:04}.json", seed);
       Run run;
-      if (fs::exists(file) && fs::exists(fs::path(file).replace_extension(".exr"))) {
-        const json found = readJson(file);
-        try {
-          run = runFromJson(found);
-        } catch (const json::exception& x) {
-          throw Error(ExitCode::kFile, fmt::format("{}: {}", file.string(), x.what()), "delete the file, and go on");
-        }
+      if (std::optional<Run> earlier = finished(file)) {
+        run = std::move(*earlier);
         checkRun(run, seed, file);
-        run.image = fs::path(file).replace_extension(".exr");
       } else {
         const auto tellRun = [&](double part) {
           const double done = (double(j) + part) / double(jobs.size()), spent = wallSeconds() - start_;
@@ -440,6 +439,21 @@ class Study {
     }
     for (std::vector<Run>& r : e.runs)
       std::sort(r.begin(), r.end(), [](const Run& a, const Run& b) { return a.seed < b.seed; });
+  }
+
+  // What an earlier start has left of a run: nothing, if it is not whole.
+  std::optional<Run> finished(const fs::path& file) const {
+    const fs::path image = fs::path(file).replace_extension(".exr");
+    if (!fs::exists(file) || !fs::exists(image)) return {};
+    std::ifstream in(file);
+    try {
+      Run run = runFromJson(json::parse(in));
+      run.image = image;
+      return run;
+    } catch (const json::exception&) {
+      if (observer_.warn) observer_.warn(file.string() + " is damaged; the run is done again");
+      return {};
+    }
   }
 
   // That a file holds what this study's runs hold.

@@ -335,10 +335,26 @@ class Converge(CommandTest):
         (self.folder / "file").write_text("")
         self.refused(4, "converge", self.scene(), "-o", self.folder / "file" / "x", says=("folder",))
 
-    def test_a_damaged_run_is_named(self):
+    def test_a_damaged_run_is_done_again(self):
+        _, report = self.quick()
+        started = report["provenance"]["started"]
+        folder = self.folder / "study/runs/equal"
+        whole = json.loads((folder / "seed-0002.json").read_text())
+        (folder / "seed-0002.json").write_text("{")
+        (folder / "seed-0003.json").write_text("[]")
+        done, report = self.quick()
+        for name in ("seed-0002.json", "seed-0003.json"):
+            self.assertIn(f"{name} is damaged; the run is done again", done.stderr)
+        again = json.loads((folder / "seed-0002.json").read_text())
+        self.assertEqual([c["relmse"] for c in again["checkpoints"]], [c["relmse"] for c in whole["checkpoints"]])
+        self.assertEqual(report["provenance"]["started"], started, "the first time")
+
+    def test_a_refused_command_leaves_no_study(self):
+        """The right one works in the same folder."""
+        self.render("--resolution", "24x16")
+        reference = ("--reference", self.out)
+        self.refused(2, "converge", self.scene(), "-o", self.folder / "study", "--resolution", "48x32", "--max-spp", "8", "--seeds", "4", "-c", "equal", "-c", "second-moment", *reference, says=("24 x 16",))  # fmt: skip
         self.quick()
-        (self.folder / "study/runs/equal/seed-0002.json").write_text("{")
-        self.refused(4, "converge", self.scene(), "-o", self.folder / "study", "--resolution", "48x32", "--max-spp", "8", "--seeds", "4", "-c", "equal", "-c", "second-moment", says=("seed-0002.json",))  # fmt: skip
 
     def test_flip_is_reported_where_it_is_installed(self):
         """The program of its authors, run by hand on the same images, says the same."""
