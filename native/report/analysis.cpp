@@ -310,7 +310,8 @@ class Reporter {
             {"chunks", r.chunks > 0 ? json(r.chunks) : json()},
             {"floor",
              {{"mse", r.mseFloor > 0 ? json(r.mseFloor) : json()},
-              {"relmse", r.relMseFloor > 0 ? json(r.relMseFloor) : json()}}}};
+              {"relmse", r.relMseFloor > 0 ? json(r.relMseFloor) : json()},
+              {"relmse_trimmed", r.trimmedFloor > 0 ? json(r.trimmedFloor) : json()}}}};
   }
 
   json curve(const Measured& m) const {
