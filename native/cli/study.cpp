@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -102,6 +103,8 @@ std::vector<const Strategy*> chosen(const std::vector<std::string>& names, size_
     if (s == nullptr) throw Error(ExitCode::kUsage, fmt::format("there is no strategy '{}'", name), "known: " + known);
     if (s->allocation == Allocation::kSecondOrder && techniques != 2)
       throw Error(ExitCode::kUsage, fmt::format("'{}' shares samples between two techniques", name), "leave it out");
+    if (std::find(list.begin(), list.end(), s) != list.end())
+      throw Error(ExitCode::kUsage, fmt::format("'{}' is named twice", name), "name each strategy once");
     list.push_back(s);
   }
   return list;

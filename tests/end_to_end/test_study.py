@@ -211,6 +211,7 @@ class Study(CommandTest):
             (("--techniques", "lobe"), "two or three"),
             (("--techniques", "lobe,lobe"), "twice"),
             (("--strategies", "fair"), "second-moment"),
+            (("--strategies", "equal,auto,equal"), "named twice"),
             (("--strategies", "second-order", "--techniques", "lobe,cosine,uniform"), "two techniques"),
             (("--cost", "1"), "2 numbers"),
             (("--cost", "1,-1"), "above 0"),
