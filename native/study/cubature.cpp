@@ -45,6 +45,7 @@ struct Cubature::Cell {
   std::vector<double> value, error;
   std::vector<double> difference;  // of the two rules, the larger of both directions
   bool alongU = true;
+  std::vector<uint8_t> lines{};  // of each point, where lines are split at jumps; else empty
 
   int rows() const { return static_cast<int>(points.size()) / kNodes; }
   bool tiny() const { return u1 - u0 < std::ldexp(1.0, -kMaxDepth) && v1 - v0 < std::ldexp(1.0, -kMaxDepth); }
@@ -172,30 +173,141 @@ std::vector<double> Cubature::refine(const Integrands& integrands, double tolera
   return difference;
 }
 
-void Cubature::splitAtJumps(const std::function<unsigned(const Point&)>& side) {
+std::vector<double> Cubature::jumpsAlong(const Chart& chart, double v, const std::vector<double>& nodes,
+                                         const Side& side) const {
+  std::vector<double> jumps;
+  const auto sideAt = [&](double u) { return side(chart.at(u, v)); };
+  unsigned before = sideAt(nodes.front());
+  for (size_t k = 0; k + 1 < nodes.size(); ++k) {
+    double low = nodes[k], high = nodes[k + 1];
+    const unsigned after = sideAt(high);
+    if (before != after) {
+      for (double middle; (middle = 0.5 * (low + high)) > low && middle < high;)
+        (sideAt(middle) == before ? low : high) = middle;
+      jumps.push_back(high);
+    }
+    before = after;
+  }
+  return jumps;
+}
+
+std::optional<Cubature::Cell> Cubature::makeSplit(const Cell& whole, const Side& side) const {
+  const Chart& map = charts_[static_cast<size_t>(whole.chart)];
+  const Rule& r = rule();
+  const auto place = [&](double from, double to, size_t k) { return 0.5 * (from + to) + 0.5 * (to - from) * r.x[k]; };
+  // where a cell's edge is the domain's, there may be no density to tell a side by
+  const auto inside = [](double from, double to) { return from + 1e-9 * (to - from); };
+  std::vector<double> nodes{inside(whole.u0, whole.u1)};
+  for (size_t j = 0; j < kNodes; ++j) nodes.push_back(place(whole.u0, whole.u1, j));
+  nodes.push_back(inside(whole.u1, whole.u0));
+  Cell cell{whole.chart, whole.u0, whole.u1, whole.v0, whole.v1, {}, {}, {}, {}, false};
+  // the first and last lines are no nodes: a jump may cross the cell between these and the edge
+  bool crossed = !jumpsAlong(map, inside(whole.v0, whole.v1), nodes, side).empty() ||
+                 !jumpsAlong(map, inside(whole.v1, whole.v0), nodes, side).empty();
+  for (size_t i = 0; i < kNodes; ++i) {
+    const double v = place(whole.v0, whole.v1, i), height = 0.5 * (whole.v1 - whole.v0);
+    std::vector<double> ends = jumpsAlong(map, v, nodes, side);
+    crossed = crossed || !ends.empty();
+    ends.insert(ends.begin(), whole.u0), ends.push_back(whole.u1);
+    for (size_t k = 0; k + 1 < ends.size(); ++k)
+      for (size_t j = 0; j < kNodes; ++j) {
+        Point p = map.at(place(ends[k], ends[k + 1], j), v);
+        const double size = p.w * 0.5 * (ends[k + 1] - ends[k]) * height;
+        p.w = size * r.kronrod[j] * r.kronrod[i];
+        p.error = size * r.gauss[j] * r.gauss[i];
+        cell.points.push_back(p);
+        cell.lines.push_back(static_cast<uint8_t>(i));
+      }
+  }
+  if (!crossed) return {};
+  return cell;
+}
+
+std::vector<double> Cubature::splitAtJumps(const Side& side, const Integrands& integrands, double tolerance,
+                                           size_t more) {
   for (size_t c = 0; c < charts_.size(); ++c) {
     if (charts_[c].dimensions != 1) continue;
-    const auto sideAt = [&](double u) { return side(charts_[c].at(u, 0.5)); };
     std::vector<double> nodes;
     for (const Cell& cell : cells_)
       if (cell.chart == static_cast<int>(c))
         for (double x : rule().x) nodes.push_back(0.5 * (cell.u0 + cell.u1) + 0.5 * (cell.u1 - cell.u0) * x);
     std::sort(nodes.begin(), nodes.end());
-    for (size_t k = 0; k + 1 < nodes.size(); ++k) {
-      double low = nodes[k], high = nodes[k + 1];
-      const unsigned below = sideAt(low);
-      if (below == sideAt(high)) continue;
-      for (double middle; (middle = 0.5 * (low + high)) > low && middle < high;)
-        (sideAt(middle) == below ? low : high) = middle;
+    for (const double jump : jumpsAlong(charts_[c], 0.5, nodes, side))
       for (Cell& cell : cells_) {
-        if (cell.chart != static_cast<int>(c) || !(cell.u0 < high && high < cell.u1)) continue;
-        Cell right = make(cell.chart, high, cell.u1, cell.v0, cell.v1);
-        cell = make(cell.chart, cell.u0, high, cell.v0, cell.v1);
+        if (cell.chart != static_cast<int>(c) || !(cell.u0 < jump && jump < cell.u1)) continue;
+        Cell right = make(cell.chart, jump, cell.u1, cell.v0, cell.v1);
+        cell = make(cell.chart, cell.u0, jump, cell.v0, cell.v1);
         cells_.push_back(std::move(right));
         break;
       }
+  }
+  if (charts_.front().dimensions == 1) return refine(integrands, tolerance, more);
+
+  const auto n = static_cast<size_t>(integrands.count);
+  const Rule& r = rule();
+  std::vector<double> total(n, 0), error(n, 0), h(n);
+  // Along v: the sum over a line is smooth in v, but for where the jump leaves the cell.
+  const auto measure = [&](Cell& cell) {
+    cell.value.assign(n, 0), cell.difference.assign(n, 0);
+    const bool split = !cell.lines.empty();
+    for (size_t m = 0; m < cell.points.size(); ++m) {
+      const Point& p = cell.points[m];
+      integrands.evaluate(p, h.data());
+      const size_t i = split ? cell.lines[m] : 0;
+      for (size_t k = 0; k < n; ++k) {
+        cell.value[k] += p.w * h[k];
+        if (split) cell.difference[k] += p.w * h[k] * (r.gauss[i] / r.kronrod[i] - 1);
+      }
+    }
+    for (double& d : cell.difference) d = std::abs(d);
+  };
+  const auto add = [&](const Cell& cell, double sign) {
+    for (size_t k = 0; k < n; ++k) total[k] += sign * cell.value[k], error[k] += sign * cell.difference[k];
+  };
+  for (Cell& cell : cells_) {
+    if (std::optional<Cell> split = makeSplit(cell, side)) cell = std::move(*split);
+    measure(cell);
+    add(cell, 1);
+  }
+  const auto worst = [&](const Cell& cell) {
+    double w = 0;
+    for (size_t k = 0; k < n; ++k)
+      if (error[k] > tolerance * std::abs(total[k])) w = std::max(w, cell.difference[k] / std::abs(total[k]));
+    return w;
+  };
+  std::priority_queue<std::pair<double, size_t>> queue;
+  for (size_t c = 0; c < cells_.size(); ++c)
+    if (!cells_[c].lines.empty()) queue.emplace(worst(cells_[c]), c);
+  for (const size_t most = cells_.size() + more; !queue.empty() && cells_.size() < most;) {
+    const auto [was, c] = queue.top();
+    queue.pop();
+    const double now = worst(cells_[c]);
+    if (!(now > 0)) continue;
+    if (now < was * (1 - 1e-9)) {  // its integrals have converged meanwhile, or grown
+      queue.emplace(now, c);
+      continue;
+    }
+    const Cell parent = std::move(cells_[c]);
+    add(parent, -1);
+    const double middle = 0.5 * (parent.v0 + parent.v1);
+    for (const auto& [v0, v1] : {std::pair{parent.v0, middle}, {middle, parent.v1}}) {
+      Cell half = make(parent.chart, parent.u0, parent.u1, v0, v1);
+      if (std::optional<Cell> split = makeSplit(half, side)) half = std::move(*split);
+      measure(half);
+      add(half, 1);
+      const size_t to = v0 == parent.v0 ? c : cells_.size();
+      if (to == c)
+        cells_[c] = std::move(half);
+      else
+        cells_.push_back(std::move(half));
+      if (!cells_[to].lines.empty()) queue.emplace(worst(cells_[to]), to);
     }
   }
+  std::vector<double> difference(n, 0);
+  for (const Cell& cell : cells_)
+    for (size_t k = 0; k < n; ++k) difference[k] += cell.difference[k] * cell.difference[k];
+  for (double& d : difference) d = std::sqrt(d);
+  return difference;
 }
 
 Points Cubature::points() const {

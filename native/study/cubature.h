@@ -4,6 +4,8 @@
 // its product; a cell is halved along the direction that converges worse.
 #pragma once
 
+#include <optional>
+
 #include "study/problem.h"
 
 namespace wardmis {
@@ -16,6 +18,8 @@ struct Integrands {
 
 class Cubature {
  public:
+  using Side = std::function<unsigned(const Point&)>;
+
   explicit Cubature(const Problem& problem);
   ~Cubature();
 
@@ -24,9 +28,12 @@ class Cubature {
   // integrands that jump, their absolute errors: the differences of the two rules, of the sign of chance in each cell.
   std::vector<double> refine(const Integrands& integrands, double tolerance, size_t more = 4000);
 
-  // In one dimension, where integrands jump at points: `side` tells the sides apart, and cells are split where it
-  // changes between two nodes, so that each integral is smooth in every cell. (The rules do not always see a jump.)
-  void splitAtJumps(const std::function<unsigned(const Point&)>& side);
+  // For integrands that jump: `side` tells the sides apart. In one dimension cells are split where it changes, so that
+  // each integral is smooth in every cell. (The rules do not always see a jump.) In two, every line of a cell's nodes
+  // is split where it changes, and cells that it crosses are halved across the lines until the estimated error of each
+  // of the integrals is below `tolerance` of its value, or `more` have been added. The last of all calls: refine() does
+  // not know such cells. Returns absolute errors as refine() does.
+  std::vector<double> splitAtJumps(const Side& side, const Integrands& integrands, double tolerance, size_t more);
 
   // The nodes, with the techniques' masses outside the domain.
   Points points() const;
@@ -34,6 +41,11 @@ class Cubature {
  private:
   struct Cell;
   Cell make(int chart, double u0, double u1, double v0, double v1) const;
+  // Where along u, between two of the ascending `nodes`, the side changes.
+  std::vector<double> jumpsAlong(const Chart& chart, double v, const std::vector<double>& nodes,
+                                 const Side& side) const;
+  // A cell whose lines of nodes are split at jumps; nothing if none crosses it.
+  std::optional<Cell> makeSplit(const Cell& whole, const Side& side) const;
 
   const Problem& problem_;
   std::vector<Chart> charts_;

@@ -129,17 +129,16 @@ Exact solve(const Problem& problem, size_t effort) {
   };
   measure();
   cubature.refine(deviations(e.points, e.moments), 1e-9, effort);
-  // In one dimension the jumps are points, at which cells are split; in two they are lines through the cells.
-  cubature.splitAtJumps([n](const Point& x) {
+  const auto side = [n](const Point& x) {
     unsigned counted = 0;
     for (Weights rule : {Weights::kCutoff, Weights::kMaximum})
       for (int i = 0; i < n; ++i)
         counted = 2 * counted + (weightedValue(rule, i, n, 1, x.p, equalShares(n), {}) > 0 ? 1 : 0);
     return counted;
-  });
+  };
   const bool flat = problem.charts().front().dimensions == 1;
   const std::vector<double> jumpErrors =
-      cubature.refine(jumps(n), flat ? 1e-9 : 1e-3, std::min<size_t>(flat ? 200 : 50, effort));
+      cubature.splitAtJumps(side, jumps(n), flat ? 1e-9 : 1e-8, std::min<size_t>(200, effort));
   measure();
   const Densities equal = equalShares(n);
   const auto jumpError = [&](Weights rule, int first) {
