@@ -84,6 +84,7 @@ struct Continuation {
   Rgb weight{0, 0, 0};  // f cos / pdf with MIS weights and counts, for light that no light sample covers
   Technique technique = kLobe;
   float scale = 0;  // weight / (f cos)
+  int set = 0;      // of the pilot's samples
   Fractions p{};    // densities of the techniques
 };
 
@@ -147,37 +148,38 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
 
   HitMoments* const moments = record != nullptr ? &record->moments : nullptr;
   CandidateHit* const candidates = record != nullptr ? record->candidates : nullptr;
-  const auto note = [&](Moments& m, Rgb f, const Fractions& p, TechniqueMask used) {
+  const auto note = [&](Moments& m, Rgb f, const Fractions& p, TechniqueMask used, int set) {
     m.add(luminance(f), p, mixture.n, used);
-    if (candidates != nullptr) candidates->add(luminance(f), p, mixture.n, used);
+    if (candidates != nullptr) candidates->add(luminance(f), p, mixture.n, used, set);
   };
 
   // One sample's share of an emitter's light, by MIS over the techniques of each integral.
   Rgb sum{0, 0, 0};
-  const auto add = [&](Technique t, Rgb fs, Rgb fd, Rgb radiance, const Fractions& p, uint8_t visibility) {
+  const auto add = [&](Technique t, Rgb fs, Rgb fd, Rgb radiance, const Fractions& p, uint8_t visibility, int set) {
     if ((visibility & kSeenByGlossy) == 0) fs = {0, 0, 0};
     if ((visibility & kSeenByDiffuse) == 0) fd = {0, 0, 0};
     if (!split) {
       const Rgb f = (fs + fd) * radiance;
       sum += f * mixture.scale(t, p, kAllTechniques);
-      if (moments != nullptr) note(moments->specular, f, p, kAllTechniques);
+      if (moments != nullptr) note(moments->specular, f, p, kAllTechniques, set);
       return;
     }
     if (specular && t != kCosine) {
       const Rgb f = fs * radiance;
       sum += f * mixture.scale(t, p, kSpecularTechniques);
-      if (moments != nullptr) note(moments->specular, f, p, kSpecularTechniques);
+      if (moments != nullptr) note(moments->specular, f, p, kSpecularTechniques, set);
     }
     if (diffuse && t != kLobe) {
       const Rgb f = fd * radiance;
       sum += f * mixture.scale(t, p, kDiffuseTechniques);
-      if (moments != nullptr) note(moments->diffuse, f, p, kDiffuseTechniques);
+      if (moments != nullptr) note(moments->diffuse, f, p, kDiffuseTechniques, set);
     }
     if (candidates != nullptr) candidates->addBoth(luminance(fs * radiance), luminance(fd * radiance), p, mixture.n);
   };
 
   for (int k = 0; k < j; ++k) {
     const Technique t = k < endLobe ? kLobe : k < endCosine ? kCosine : kLight;
+    const int set = (k - (t == kLobe ? 0 : t == kCosine ? endLobe : endCosine)) % kSets;
     ++counts.samples[t];
     const Vec3<T> wi = batch.wi(k);
     if (!(wi.z > T(0))) continue;  // below the surface: zero, and it counts
@@ -213,10 +215,11 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
             ((l.visibility & kSeenByGlossy) != 0 ? fs : Rgb{}) + ((l.visibility & kSeenByDiffuse) != 0 ? fd : Rgb{});
         sum += f * l.radiance / (l.pdf * mixture.n[kLight]);
         // which of the lights is drawn is noise, too, and no other technique covers them
-        if (candidates != nullptr) candidates->add(luminance(f * l.radiance), {0, 0, l.pdf}, mixture.n, maskOf(kLight));
+        if (candidates != nullptr)
+          candidates->add(luminance(f * l.radiance), {0, 0, l.pdf}, mixture.n, maskOf(kLight), set);
       } else {
         p[kLight] = l.pdf;
-        add(kLight, fs, fd, l.radiance, p, l.visibility);
+        add(kLight, fs, fd, l.radiance, p, l.visibility, set);
       }
       continue;
     }
@@ -233,7 +236,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     const Hit hit = world.accel.intersect(ray);
     world.emitters.along(ray, hit.t, !hit.valid(), [&](const EmitterHit& e) {
       p[kLight] = e.pdf;
-      add(t, fs, fd, e.radiance, p, e.visibility);
+      add(t, fs, fd, e.radiance, p, e.visibility, set);
     });
     if (!hit.valid()) continue;
     const Shape& shape = world.geometry.shapes[hit.shape];
@@ -241,13 +244,13 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     if (maxComponent(m.emission.value) > 0) {
       p[kLight] = world.emitters.trianglePdf(world.geometry.placements[hit.placement], hit, d);
       const Rgb radiance = interact<N>(world.scene, world.geometry, ray, hit).emission;
-      add(t, fs, fd, radiance, p, world.geometry.placements[hit.placement].visibility);
+      add(t, fs, fd, radiance, p, world.geometry.placements[hit.placement].visibility, set);
     }
     if constexpr (kPath) {
       p[kLight] = 0;  // no light sample covers what is reflected there
       const float scale = mixture.scale(t, p, techniquesFor(plan.integrand, t));
       const Rgb w = (!split ? fs + fd : t == kLobe ? fs : fd) * scale;
-      if (maxComponent(w) > 0) continuations.list.set(continuations.count++, {ray, hit, w, t, scale, p});
+      if (maxComponent(w) > 0) continuations.list.set(continuations.count++, {ray, hit, w, t, scale, set, p});
     }
   }
   if (moments != nullptr) moments->specular.hits += 1, moments->diffuse.hits += 1;

@@ -18,7 +18,11 @@ constexpr uint32_t kWhole = 16;  // a pilot of this part of a render, or less, i
 
 uint32_t targetOf(const RenderSettings& s) { return s.seconds > 0 ? ~uint32_t{0} : s.spp; }
 // Of a render of `target` samples: at most half of them, and none of one sample.
-uint32_t pilotOf(const RenderSettings& s, uint32_t target) { return std::min(s.pilotSpp, target / 2); }
+// One that is no part of the image is to cost little, too.
+uint32_t pilotOf(const RenderSettings& s, uint32_t target) {
+  const uint32_t most = s.allocation == Allocation::kAuto ? std::max(target / kWhole, 1u) : target / 2;
+  return std::min({s.pilotSpp, most, target / 2});
+}
 
 // Calls a function every quarter of a second from a thread of its own, until destroyed.
 class Ticker {
@@ -168,12 +172,14 @@ FilmBuffer renderInArena(const BuiltScene& built, const RenderSettings& settings
   Run run(settings, observer, setup, buffer);
   if (observer.started) observer.started(stats);
   SampleCost& cost = setup.input.cost;
+  const Sampler own = setup.input.sampler;
   std::vector<PixelFractions> perPixel;
   if (stats.allocated) {
     if (settings.costFrom == CostFrom::kMeasured) cost = measureCost(built, settings).perSample;
     if (apart > 0) {
       run.expectExtra(apart);
-      setup.reseed(~settings.seed);  // fractions must not depend on the points that they are used for
+      // fractions must not depend on the points that they are used for, nor a hit's two samples on each other
+      setup.drawFrom({SamplerType::kIndependent, ~settings.seed, 1});
     }
     Pilot pilot(buffer.width, buffer.height, settings.allocation);
     if (settings.costFrom == CostFrom::kRays) {
@@ -192,7 +198,7 @@ FilmBuffer renderInArena(const BuiltScene& built, const RenderSettings& settings
     stats.pilotCpuSeconds = pilotTime.cpu;
     const bool tooLong = settings.seconds > 0 && pilotTime.wall * kWhole > settings.seconds;
     stats.pilotKept = apart == 0 || run.stopped() || tooLong;
-    if (apart > 0) setup.reseed(settings.seed);
+    setup.drawFrom(own);
     if (!stats.pilotKept) run.throwAway();
   }
   run.until(target, nullptr);
@@ -205,11 +211,7 @@ FilmBuffer renderInArena(const BuiltScene& built, const RenderSettings& settings
 
 }  // namespace
 
-uint32_t pilotApart(const RenderSettings& s) {
-  const uint32_t target = targetOf(s), pilot = pilotOf(s, target);
-  const bool little = pilot <= target / kWhole;
-  return s.allocation == Allocation::kAuto && s.sampler == SamplerType::kSobol && little ? pilot : 0;
-}
+uint32_t pilotApart(const RenderSettings& s) { return s.allocation == Allocation::kAuto ? pilotOf(s, targetOf(s)) : 0; }
 
 FilmBuffer render(const BuiltScene& built, const RenderSettings& settings, Statistics& statistics,
                   const RenderObserver& observer) {

@@ -31,7 +31,8 @@ struct RenderSetup {
   RenderSetup& operator=(const RenderSetup&) = delete;
 
   FilmBuffer film() const;  // an empty one, of the border's size
-  void reseed(uint64_t seed) { sampler_ = sampler_.reseeded(seed); }
+  // Instead of the settings' own points.
+  void drawFrom(const Sampler& sampler) { sampler_ = sampler; }
 
   uint32_t needs = 0, kernelNeeds = 0;
   TechniqueMask techniques = 0;  // that the scene has

@@ -52,6 +52,10 @@ Rgb cameraSample(const KernelInput& in, const Ray& ray, uint32_t pixelKey, uint3
                                in.samplesPerHit, std::bit_floor(plan.index));
   plan.available = mask;
   plan.samples = in.samplesPerHit;
+  if (candidates != nullptr) {
+    plan.samples = kSets * std::popcount(mask);
+    plan.fractions = restrict({1, 1, 1}, mask);
+  }
   plan.integrand = in.integrand;
   plan.weights = in.weights;
   plan.pixelKey = pixelKey;
@@ -71,12 +75,13 @@ Rgb cameraSample(const KernelInput& in, const Ray& ray, uint32_t pixelKey, uint3
     for (int k = 0; k < more.count; ++k) {
       const Continuation& c = more.list[k];
       const uint64_t rays = counts.rays();
-      const Rgb value = followPath<N>(world, in.sampler, pixelKey,
-                                      sample * static_cast<uint32_t>(in.samplesPerHit) + static_cast<uint32_t>(k), c,
-                                      in.depth, counts);
+      const Rgb value =
+          followPath<N>(world, in.sampler, pixelKey,
+                        sample * static_cast<uint32_t>(plan.samples) + static_cast<uint32_t>(k), c, in.depth, counts);
       sum += value;
       counts.following[c.technique] += counts.rays() - rays;
-      if (candidate) candidate->add(luminance(value) / c.scale, c.p, n, techniquesFor(plan.integrand, c.technique));
+      if (candidate)
+        candidate->add(luminance(value) / c.scale, c.p, n, techniquesFor(plan.integrand, c.technique), c.set);
     }
   }
   if (candidate) candidate->addTo(*candidates, in.cost);

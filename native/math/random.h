@@ -97,8 +97,6 @@ class Sampler {
     columns_ = static_cast<uint32_t>(std::sqrt(static_cast<double>(block_)));
     rows_ = (block_ + columns_ - 1) / columns_;
   }
-  // The same points for another seed.
-  Sampler reseeded(uint64_t seed) const { return {type_, seed, block_}; }
   uint32_t pixelKey(uint32_t x, uint32_t y) const { return combine(combine(seed_, x), y); }
 
   Vec2f get2D(uint32_t pixelKey, uint32_t dimension, uint32_t index) const {

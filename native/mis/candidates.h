@@ -11,6 +11,8 @@ inline constexpr int kCandidates = 19;  // of three techniques: proportional to 
 
 struct CandidateList {
   float a[kTechniques][kCandidates];  // fractions
+  // Variance of a technique's count over the hits, whole or not, over the samples of a hit.
+  float spread[kTechniques][kCandidates];
   Fractions at(int c) const { return {a[0][c], a[1][c], a[2][c]}; }
 };
 // The candidates of a render with so many samples at a hit. All but the equal counts are rounded to quarters of a
@@ -36,18 +38,19 @@ struct SampleCost {
   }
 };
 
-// Sums over hits; per candidate the estimate of sum_i a_i E_{p_i}[y_i^2], y_i being what a sample of technique i adds
-// to all integrands with balance weights, and the squared difference of its product with the cost from that of equal
-// counts. mean: of each technique but the last, the estimate of E_{p_i}[y_i]; that of the last follows from
-// sum_i a_i E_{p_i}[y_i] = integral f, which is `integral`.
+// Sums over hits, per candidate. Of a technique's sample y_i, what it adds to all integrands with balance weights, only
+// the scatter at one hit is what sharing can change: Var[y_i | hit] = E[y_i^2] - E[y_i | hit]^2. The square of the mean
+// is the product of two estimates of it from samples of their own. Where counts are not whole numbers at each hit, the
+// scatter of E[y_i | hit] over the hits counts, too: spread_i (E[E[y_i | hit]^2] - E[y_i]^2).
 struct CandidateSums {
-  float value[kCandidates]{}, gain2[kCandidates]{};
-  float mean[kTechniques - 1][kCandidates]{};
+  float within[kCandidates]{};  // sum_i a_i Var[y_i | hit] + spread_i E[y_i | hit]^2
+  float gain2[kCandidates]{};   // squared difference of its product with the cost from that of equal counts
+  float mean[kTechniques - 1][kCandidates]{};  // E[y_i]; the last follows from sum_i a_i E[y_i] = integral f
   float integral = 0, hits = 0;
 
   CandidateSums& operator+=(const CandidateSums& b) {
     for (int c = 0; c < kCandidates; ++c) {
-      value[c] += b.value[c], gain2[c] += b.gain2[c];
+      within[c] += b.within[c], gain2[c] += b.gain2[c];
       for (int i = 0; i < kTechniques - 1; ++i) mean[i][c] += b.mean[i][c];
     }
     integral += b.integral, hits += b.hits;
@@ -55,24 +58,27 @@ struct CandidateSums {
   }
 };
 
+// The samples of a technique at a hit of the pilot: two, each of a set that estimates by itself.
+inline constexpr int kSets = 2;
+
 // One hit: the samples of its integrands, then addTo() the sums.
 class CandidateHit {
  public:
   explicit CandidateHit(const CandidateList& list) : list_(list) {}
 
-  // f, p, expected counts n and techniques `used` as for Moments::add.
-  void add(float f, const Fractions& p, const Fractions& n, TechniqueMask used) {
+  // f, p, expected counts n (of both sets) and techniques `used` as for Moments::add.
+  void add(float f, const Fractions& p, const Fractions& n, TechniqueMask used, int set) {
     if (!(f > 0)) return;
     Fractions own{};
     float q = 0;
     for (int k = 0; k < kTechniques; ++k)
       if ((used >> k & 1u) != 0) own[k] = p[k], q += n[k] * p[k];
     const float w = f / q, f2 = f * w, w0 = own[0] * w, w1 = own[1] * w;
-    integral_ += w;
+    integral_[set] += w;
     for (int c = 0; c < kCandidates; ++c) {
       const float r = 1 / (list_.a[0][c] * own[0] + list_.a[1][c] * own[1] + list_.a[2][c] * own[2]);
       value_[c] += f2 * r;
-      mean_[0][c] += w0 * r, mean_[1][c] += w1 * r;
+      mean_[set][0][c] += w0 * r, mean_[set][1][c] += w1 * r;
     }
   }
   // A light sample that serves two integrands: E[(f_s/q_s + f_d/q_d)^2] has their product twice, with the light's a.
@@ -85,23 +91,33 @@ class CandidateHit {
     }
   }
   void addTo(CandidateSums& sums, const SampleCost& cost) const {
-    const auto costOf = [&](int c) { return cost.of(list_.a[0][c], list_.a[1][c], list_.a[2][c]); };
+    float equal = 0;
     for (int c = 0; c < kCandidates; ++c) {
-      const float gain = value_[0] * costOf(0) - value_[c] * costOf(c);
-      sums.value[c] += value_[c];
-      sums.gain2[c] += gain * gain;
-      sums.mean[0][c] += mean_[0][c], sums.mean[1][c] += mean_[1][c];
+      const float a[] = {list_.a[0][c], list_.a[1][c], list_.a[2][c]};
+      float last[kSets];
+      for (int s = 0; s < kSets; ++s)
+        last[s] = a[2] > 0 ? (integral_[s] - a[0] * mean_[s][0][c] - a[1] * mean_[s][1][c]) / a[2] : 0;
+      // each set has half of the sum
+      const float square[] = {4 * mean_[0][0][c] * mean_[1][0][c], 4 * mean_[0][1][c] * mean_[1][1][c],
+                              4 * last[0] * last[1]};
+      float within = value_[c];
+      for (int i = 0; i < kTechniques; ++i) within -= (a[i] - list_.spread[i][c]) * square[i];
+      const float priced = within * cost.of(a[0], a[1], a[2]);
+      if (c == 0) equal = priced;
+      sums.within[c] += within;
+      sums.gain2[c] += (equal - priced) * (equal - priced);
+      sums.mean[0][c] += mean_[0][0][c] + mean_[1][0][c], sums.mean[1][c] += mean_[0][1][c] + mean_[1][1][c];
     }
-    sums.integral += integral_, sums.hits += 1;
+    sums.integral += integral_[0] + integral_[1], sums.hits += 1;
   }
 
  private:
   const CandidateList& list_;
-  float value_[kCandidates]{}, mean_[kTechniques - 1][kCandidates]{}, integral_ = 0;
+  float value_[kCandidates]{}, mean_[kSets][kTechniques - 1][kCandidates]{}, integral_[kSets]{};
 };
 
-// The candidate whose gain in predicted variance x cost over equal counts, less the gain's standard error, is the
-// largest; equal counts where none is above nothing, or where hits are too few to tell.
+// The candidate whose gain in predicted variance x cost over equal counts, less two of the gain's standard errors, is
+// the largest; equal counts where none is above nothing, or where hits are too few to tell.
 Fractions chooseCandidate(const CandidateSums& sums, const CandidateList& list, const SampleCost& cost);
 
 }  // namespace wardmis

@@ -341,27 +341,50 @@ TEST(Render, AutoKeepsSobolsPointsEven) {
     lookFrom(scene, view, 1, 8);
     return errorRatio(scene, s, Allocation::kAuto);
   };
-  EXPECT_LT(ratio(2.4f, 1.2f), 0.6);
-  EXPECT_LT(ratio(0.6f, 1.3f), 1.1);
+  EXPECT_LT(ratio(2.4f, 1.2f), 1.05);
+  EXPECT_LT(ratio(0.6f, 1.3f), 1.05);
 }
 
-// The pilot of `auto` under Sobol's points is part of the image only where it is not little beside it; what it draws is
-// counted in any case.
+// The pilot of `auto` is no part of the image; what it draws is counted. Others' is.
 TEST(Render, APilotApartIsCounted) {
-  const auto ran = [](Allocation rule, SamplerType sampler, uint32_t spp) {
+  const auto ran = [](Allocation rule, SamplerType sampler, uint32_t spp, uint32_t pilot) {
     RenderSettings s = quick();
     s.allocation = rule, s.sampler = sampler, s.spp = spp;
     Statistics stats;
     const FilmBuffer film = renderScene(mixedScene(), s, &stats);
     EXPECT_TRUE(stats.allocated);
     EXPECT_EQ(film.samples, spp);
-    EXPECT_EQ(stats.counts.cameraRays, film.pixels.size() * (spp + (stats.pilotKept ? 0 : s.pilotSpp)));
-    return stats.pilotKept;
+    EXPECT_EQ(stats.pilotKept, pilot == 0);
+    EXPECT_EQ(pilotApart(s), pilot);
+    EXPECT_EQ(stats.counts.cameraRays, film.pixels.size() * (spp + pilot));
   };
-  EXPECT_FALSE(ran(Allocation::kAuto, SamplerType::kSobol, 64));
-  EXPECT_TRUE(ran(Allocation::kAuto, SamplerType::kSobol, 63));
-  EXPECT_TRUE(ran(Allocation::kAuto, SamplerType::kIndependent, 64));
-  EXPECT_TRUE(ran(Allocation::kSecondMoment, SamplerType::kSobol, 64));
+  ran(Allocation::kAuto, SamplerType::kSobol, 64, 4);
+  ran(Allocation::kAuto, SamplerType::kIndependent, 32, 2);
+  ran(Allocation::kAuto, SamplerType::kSobol, 8, 1);
+  ran(Allocation::kSecondMoment, SamplerType::kSobol, 64, 0);
+}
+
+// A lamp of no width to speak of through a grille, of which a pixel sees several bars: a light sample scatters over the
+// pixel's hits, and not at any of them, so that more light samples there help nothing. Taken for noise, the scatter
+// drew the samples to the light: dappled sunlight had 1.3 to 1.9 times the error of equal counts.
+TEST(Render, AutoKnowsScatterFromShadow) {
+  Scene scene;
+  scene.materials = {ward({0.5f, 0.5f, 0.5f}, {0.1f, 0.1f, 0.1f}, 0.2f, WardVariant::kWardGmd)};
+  addPlane(scene, 6, 0);
+  for (int i = -40; i < 40; ++i) {
+    const float x = 0.13f * static_cast<float>(i);
+    addMesh(scene, {{x, -5, 3}, {x + 0.065f, -5, 3}, {x + 0.065f, 5, 3}, {x, 5, 3}}, {0, 1, 2, 0, 2, 3}, 0);
+  }
+  scene.world.radiance = {0.4f, 0.4f, 0.4f};
+  Light sun;
+  sun.type = LightType::kSun;
+  sun.emitted = {3, 3, 3};
+  sun.angle = 0.009f;
+  scene.lights = {sun};
+  lookFrom(scene, 0.9f, 1.5f, 16);
+  RenderSettings s = quick();
+  s.integrator = Integrator::kDirect;
+  expectOfAuto(scene, s, 1.06);
 }
 
 TEST(Render, CountsWhatItSpends) {

@@ -16,17 +16,18 @@ constexpr int kSamples = 12;  // at a hit
 const CandidateLists lists(kSamples);
 const CandidateList& all = lists.of(kAllTechniques);
 
-// The choice from a pilot of so many hits, each of one sample a technique.
+// The choice from a pilot of so many hits, each of two samples a technique.
 Fractions choose(const WardCase& c, int hits, const Fractions& cost, uint64_t seed) {
   Random random(seed);
-  const Mixture equal({1.0f / 3, 1.0f / 3, 1.0f / 3}, 3, Weights::kBalance);
+  const Mixture equal({1.0f / 3, 1.0f / 3, 1.0f / 3}, 3 * kSets, Weights::kBalance);
   CandidateSums sums;
   for (int h = 0; h < hits; ++h) {
     CandidateHit hit(all);
-    for (int i = 0; i < 3; ++i) {
-      const Sampled s = c.sample(i, random);
-      hit.add(s.f, s.p, equal.n, kAllTechniques);
-    }
+    for (int i = 0; i < 3; ++i)
+      for (int set = 0; set < kSets; ++set) {
+        const Sampled s = c.sample(i, random);
+        hit.add(s.f, s.p, equal.n, kAllTechniques, set);
+      }
     hit.addTo(sums, {0, cost});
   }
   return chooseCandidate(sums, all, {0, cost});
@@ -91,33 +92,40 @@ TEST(Candidates, FallBackToEqualCountsWhereTheGainIsNoise) {
   EXPECT_GE(fallen, 57);  // of 60; a single hit proves nothing
 }
 
-// The sums are what they are said to be: of a light sample that serves two integrands, E[(f_s/q_s + f_d/q_d)^2].
-// Lobe, cosine and light are uniform on [0, 1] here, with f_s = 2x and f_d = 1 + x.
+// The sums are what they are said to be: of a light sample that serves two integrands, Var[f_s/q_s + f_d/q_d]. Lobe,
+// cosine and light are uniform on [0, 1] here, with f_s = 2x and f_d = 1 + x; all is `shade` times that at a hit, which
+// is no scatter that whole counts could change.
 TEST(Candidates, PredictTheVarianceOfSplitIntegrands) {
-  const Fractions n{1, 1, 1}, p{1, 1, 1};
+  const Fractions n{2, 2, 2}, p{1, 1, 1};
   Random random(4);
   CandidateSums sums;
-  const int hits = 100000;
+  const int hits = 200000;
   for (int h = 0; h < hits; ++h) {
     CandidateHit hit(all);
-    for (int t = 0; t < 3; ++t) {
-      const float x = random.square<float>().x, fs = 2 * x, fd = 1 + x;
-      if (t != kCosine) hit.add(fs, p, n, kSpecularTechniques);
-      if (t != kLobe) hit.add(fd, p, n, kDiffuseTechniques);
-      hit.addBoth(fs, fd, p, n);
-    }
+    const float shade = random.square<float>().x < 0.5f ? 2 : 0;
+    for (int t = 0; t < 3; ++t)
+      for (int set = 0; set < kSets; ++set) {
+        const float x = random.square<float>().x, fs = shade * 2 * x, fd = shade * (1 + x);
+        if (t != kCosine) hit.add(fs, p, n, kSpecularTechniques, set);
+        if (t != kLobe) hit.add(fd, p, n, kDiffuseTechniques, set);
+        hit.addBoth(fs, fd, p, n);
+      }
     hit.addTo(sums, {1, 1, 1});
   }
   for (int c = 0; c < kCandidates; ++c) {
     const Fractions a = all.at(c);
-    const double s = 1.0 / double(a[0] + a[2]), d = 1.0 / double(a[1] + a[2]);
-    // E f_s^2 = 4/3, E f_d^2 = 7/3, E f_s f_d = 5/3; E f_s = 1, E f_d = 3/2
-    const double second = s * 4 / 3 + d * 7 / 3 + 2 * double(a[2]) * s * d * 5 / 3;
-    EXPECT_NEAR(double(sums.value[c]) / hits, second, 0.02 * second);
+    const double s = 1.0 / double(a[0] + a[2]), d = 1.0 / double(a[1] + a[2]), l = double(a[2]);
+    // E f_s^2 = 4/3, E f_d^2 = 7/3, E f_s f_d = 5/3; E f_s = 1, E f_d = 3/2; E shade = 1, E shade^2 = 2
+    const double second = s * 4 / 3 + d * 7 / 3 + 2 * l * s * d * 5 / 3;
+    const double means[] = {s, 1.5 * d, s + 1.5 * d};
+    double expected = second;
+    for (size_t i = 0; i < 3; ++i)
+      expected -= (double(a[i]) - double(all.spread[i][static_cast<size_t>(c)])) * means[i] * means[i];
+    EXPECT_NEAR(double(sums.within[c]) / hits, 2 * expected, 0.03 * second) << c;
     EXPECT_NEAR(double(sums.mean[0][c]) / hits, s, 0.02 * s);
     EXPECT_NEAR(double(sums.mean[1][c]) / hits, 1.5 * d, 0.02 * d);
   }
-  EXPECT_NEAR(double(sums.integral) / hits, 2.5, 0.02);
+  EXPECT_NEAR(double(sums.integral) / hits, 2.5, 0.03);
 }
 
 TEST(Candidates, AnExpensiveTechniqueGetsLess) {
