@@ -109,12 +109,15 @@ std::vector<std::string> finding(const json& r) {
   }
   std::vector<std::string> errors, disagree;
   for (const json& c : r["configurations"]) {
-    if (c["name"] == base || c["time_to_target"]["verdict"] != "faster") continue;
+    if (c["name"] == base) continue;
     const std::string name = c["name"];
-    if (c["equal_samples"].is_object() && c["equal_samples"]["ratio"].is_object())
+    const bool sooner = c["time_to_target"]["verdict"] == "faster";
+    const json ratio = c["equal_samples"].is_object() ? c["equal_samples"]["ratio"] : json();
+    if (ratio.is_object() && (sooner || ratio["high"] < 1 || ratio["low"] > 1))
       errors.push_back(fmt::format(
           "{} {}{}", name, interval(c["equal_samples"]["ratio"]),
           c["pilot_apart"] > 0 ? fmt::format(" (its pilot of {} more not counted)", c["pilot_apart"].get<int>()) : ""));
+    if (!sooner) continue;
     // a squared error is that of the few worst pixels; what most pixels show may say otherwise
     const json &own = c["curve"].back(), &other = baseline["curve"].back();
     if (own["spp"] == other["spp"] && own["mape"]["low"] > other["mape"]["high"])

@@ -7,9 +7,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "math/number.h"
+
 namespace wardmis {
 namespace {
 
+constexpr double kRounding = 1e-6;  // of a value: images are floats, and renderers add up in floats
 constexpr double kUnsureSlope = 1;  // width of an interval that says nothing
 
 size_t blocksAcross(int pixels) { return static_cast<size_t>((pixels + kBlock - 1) / kBlock); }
@@ -77,22 +80,23 @@ BiasTest testBias(const std::vector<RgbImage>& images, const RgbImage& reference
     imageSum += d, imageSquares += d * d;
   }
   // the seeds' spread and the reference's own, added: Student's t with the seeds' degrees of freedom, which is careful
-  const auto tOf = [&](double s, double q, double extra) {
+  const auto tOf = [&](double s, double q, double extra, double value) {
     const double mean = s / n, variance = std::max(0.0, q / n - mean * mean) / (n - 1) + extra;
-    const double rounding = 1e-6 * std::abs(mean);  // images are floats
-    return mean == 0 ? 0 : mean / std::sqrt(variance + rounding * rounding);
+    return mean == 0 ? 0 : mean / std::sqrt(variance + square(kRounding * value));
   };
   BiasTest test;
   std::vector<double> z(truth.size());
   test.blocks = truth.size();
   test.threshold = sidak(kBiasLevel, test.blocks);
   for (size_t b = 0; b < truth.size(); ++b) {
-    z[b] = tOf(sum[b], squares[b], own[b]);
+    z[b] = tOf(sum[b], squares[b], own[b], truth[b]);
     const double p = pOfStudent(z[b], n - 1);
     test.smallestP = std::min(test.smallestP, p);
     test.failed += p < test.threshold ? 1 : 0;
   }
-  test.imageZ = tOf(imageSum, imageSquares, ownImage);
+  double imageTruth = 0;
+  for (size_t i = 0; i < pixels; ++i) imageTruth += grey(reference.rgb, i) / double(pixels);
+  test.imageZ = tOf(imageSum, imageSquares, ownImage, imageTruth);
   test.imageP = pOfStudent(test.imageZ, n - 1);
   spreadOverPixels(test, z, w, h);
   return test;
@@ -160,17 +164,19 @@ BiasTest compareConverged(const Reference& a, const Reference& b) {
       w, h, [&](size_t i) { return grey(a.image.rgb, i) - grey(b.image.rgb, i); }, false);
   const std::vector<double> variance = blockMeans(
       w, h, [&](size_t i) { return greyVariance(a.variance, i) + greyVariance(b.variance, i); }, true);
+  const std::vector<double> value = blockMeans(
+      w, h, [&](size_t i) { return grey(a.image.rgb, i); }, false);
   std::vector<double> z(difference.size());
   test.blocks = difference.size();
   test.threshold = sidak(kBiasLevel, test.blocks);
   double sum = 0, squares = 0;
   for (size_t k = 0; k < z.size(); ++k) {
-    const double rounding = 1e-6 * std::abs(difference[k]);
-    z[k] = difference[k] == 0 ? 0 : difference[k] / std::sqrt(variance[k] + rounding * rounding);
+    const double withRounding = variance[k] + square(kRounding * value[k]);
+    z[k] = difference[k] == 0 ? 0 : difference[k] / std::sqrt(withRounding);
     const double p = pOfNormal(z[k]);
     test.smallestP = std::min(test.smallestP, p);
     test.failed += p < test.threshold ? 1 : 0;
-    sum += difference[k], squares += variance[k];
+    sum += difference[k], squares += withRounding;
   }
   test.imageZ = sum == 0 ? 0 : sum / std::sqrt(squares);
   test.imageP = pOfNormal(test.imageZ);

@@ -102,6 +102,19 @@ TEST(Seeds, ConvergedImagesAreCompared) {
   EXPECT_TRUE(compareConverged(a, b).biased());
 }
 
+// An even background, exact but for the last digits of floats: Cycles' differs from ours by 8e-7.
+TEST(Seeds, RoundingIsNoBias) {
+  Reference a, b;
+  a.image = {16, 16, std::vector<float>(16 * 16 * 3, 0.0508760884f)};
+  b.image = {16, 16, std::vector<float>(16 * 16 * 3, 0.0508761294f)};
+  a.variance.assign(a.image.rgb.size(), 0.0f), b.variance = a.variance;
+  EXPECT_FALSE(compareConverged(a, b).biased());
+  EXPECT_FALSE(seedStatistics(std::vector<RgbImage>(8, a.image), b.image, {}).biased());
+  for (float& v : b.image.rgb) v *= 1.0001f;
+  EXPECT_TRUE(compareConverged(a, b).biased());
+  EXPECT_TRUE(seedStatistics(std::vector<RgbImage>(8, a.image), b.image, {}).biased());
+}
+
 TEST(Seeds, SlopesAreJudged) {
   const auto cause = [](double low, double high, bool biased, bool heavy, bool independent,
                         std::optional<Interval> bySamples = {}, bool allocated = false) {
