@@ -364,27 +364,27 @@ TEST(Render, APilotApartIsCounted) {
   ran(Allocation::kSecondMoment, SamplerType::kSobol, 64, 0);
 }
 
-// A lamp of no width to speak of through a grille, of which a pixel sees several bars: a light sample scatters over the
-// pixel's hits, and not at any of them, so that more light samples there help nothing. Taken for noise, the scatter
-// drew the samples to the light: dappled sunlight had 1.3 to 1.9 times the error of equal counts.
+// The sun through a grille: a light sample scatters over the hits, and not at any of them, so that more light samples
+// there help nothing. Taken for noise, the scatter drew the samples to the light: ratios of 1.02 and 1.09 here (and of
+// 1.3 to 1.9 under leaves), now .99 and .98.
 TEST(Render, AutoKnowsScatterFromShadow) {
   Scene scene;
-  scene.materials = {ward({0.5f, 0.5f, 0.5f}, {0.1f, 0.1f, 0.1f}, 0.2f, WardVariant::kWardGmd)};
+  scene.materials = {ward({0.4f, 0.4f, 0.4f}, {0.3f, 0.3f, 0.3f}, 0.15f, WardVariant::kWardGmd)};
   addPlane(scene, 6, 0);
-  for (int i = -40; i < 40; ++i) {
-    const float x = 0.13f * static_cast<float>(i);
-    addMesh(scene, {{x, -5, 3}, {x + 0.065f, -5, 3}, {x + 0.065f, 5, 3}, {x, 5, 3}}, {0, 1, 2, 0, 2, 3}, 0);
+  for (int i = -12; i < 4; ++i) {  // not between the camera and what it sees
+    const float x = 0.4f * static_cast<float>(i);
+    addMesh(scene, {{x, -5, 3}, {x + 0.2f, -5, 3}, {x + 0.2f, 5, 3}, {x, 5, 3}}, {0, 1, 2, 0, 2, 3}, 0);
   }
-  scene.world.radiance = {0.4f, 0.4f, 0.4f};
+  scene.world.radiance = {0.5f, 0.5f, 0.5f};
   Light sun;
   sun.type = LightType::kSun;
-  sun.emitted = {3, 3, 3};
+  sun.emitted = {20, 20, 20};
   sun.angle = 0.009f;
   scene.lights = {sun};
   lookFrom(scene, 0.9f, 1.5f, 16);
   RenderSettings s = quick();
   s.integrator = Integrator::kDirect;
-  expectOfAuto(scene, s, 1.06);
+  expectOfAuto(scene, s, 1.02);
 }
 
 TEST(Render, CountsWhatItSpends) {
