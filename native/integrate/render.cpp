@@ -17,8 +17,8 @@ namespace {
 constexpr uint32_t kWhole = 16;  // a pilot of this part of a render, or less, is little
 
 uint32_t targetOf(const RenderSettings& s) { return s.seconds > 0 ? ~uint32_t{0} : s.spp; }
-// Of a render of `target` samples: at most half of them, and none of one sample.
-// One that is no part of the image is to cost little, too.
+// Of a render of `target` samples: at most half of them, and none of one sample. One that is no part of the image is to
+// cost little, too.
 uint32_t pilotOf(const RenderSettings& s, uint32_t target) {
   const uint32_t most = s.allocation == Allocation::kAuto ? std::max(target / kWhole, 1u) : target / 2;
   return std::min({s.pilotSpp, most, target / 2});

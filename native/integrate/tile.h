@@ -47,14 +47,15 @@ Rgb cameraSample(const KernelInput& in, const Ray& ray, uint32_t pixelKey, uint3
   const Fractions& shares =
       allocated != nullptr && follows && covers(allocated->fractions, mask) ? allocated->fractions : in.fractions;
   plan.index = follows ? pixel.visits++ : sample;
-  // whole numbers over each block of visits 2^k ... 2^(k+1) - 1, over which the sampler spreads u evenly
-  plan.fractions = wholeCounts(restrict(in.rule == Allocation::kAlbedo ? albedoFractions(s) : shares, mask),
-                               in.samplesPerHit, std::bit_floor(plan.index));
   plan.available = mask;
-  plan.samples = in.samplesPerHit;
-  if (candidates != nullptr) {
+  if (candidates != nullptr) {  // the pilot of `auto`: each technique alike
     plan.samples = kSets * std::popcount(mask);
     plan.fractions = restrict({1, 1, 1}, mask);
+  } else {
+    // whole numbers over each block of visits 2^k ... 2^(k+1) - 1, over which the sampler spreads u evenly
+    plan.samples = in.samplesPerHit;
+    plan.fractions = wholeCounts(restrict(in.rule == Allocation::kAlbedo ? albedoFractions(s) : shares, mask),
+                                 plan.samples, std::bit_floor(plan.index));
   }
   plan.integrand = in.integrand;
   plan.weights = in.weights;

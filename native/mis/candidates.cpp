@@ -30,8 +30,8 @@ Fractions chooseCandidate(const CandidateSums& sums, const CandidateList& list, 
   if (!(sums.hits >= kLeastHits)) return list.at(0);
   const auto objective = [&](int c) {
     const Fractions a = list.at(c);
-    const float last = a[2] > 0 ? (sums.integral - a[0] * sums.mean[0][c] - a[1] * sums.mean[1][c]) / a[2] : 0;
-    const float means[] = {sums.mean[0][c], sums.mean[1][c], last};
+    const float first = sums.mean[0][c], second = sums.mean[1][c];
+    const float means[] = {first, second, list.last(c, sums.integral, first, second)};
     float squares = 0;
     for (int i = 0; i < kTechniques; ++i) squares += list.spread[i][c] * means[i] * (means[i] / sums.hits);
     return (sums.within[c] - squares) * cost.of(a[0], a[1], a[2]);

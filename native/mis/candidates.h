@@ -14,6 +14,10 @@ struct CandidateList {
   // Variance of a technique's count over the hits, whole or not, over the samples of a hit.
   float spread[kTechniques][kCandidates];
   Fractions at(int c) const { return {a[0][c], a[1][c], a[2][c]}; }
+  // E[y_i] of the last technique, from those of the others: sum_i a_i E[y_i] = integral f.
+  float last(int c, float integral, float first, float second) const {
+    return a[2][c] > 0 ? (integral - a[0][c] * first - a[1][c] * second) / a[2][c] : 0;
+  }
 };
 // The candidates of a render with so many samples at a hit. All but the equal counts are rounded to quarters of a
 // sample, so that over 2^k hits a technique's points are a few powers of two: as Sobol's want to be.
@@ -45,7 +49,7 @@ struct SampleCost {
 struct CandidateSums {
   float within[kCandidates]{};  // sum_i a_i Var[y_i | hit] + spread_i E[y_i | hit]^2
   float gain2[kCandidates]{};   // squared difference of its product with the cost from that of equal counts
-  float mean[kTechniques - 1][kCandidates]{};  // E[y_i]; the last follows from sum_i a_i E[y_i] = integral f
+  float mean[kTechniques - 1][kCandidates]{};  // E[y_i]; the last follows
   float integral = 0, hits = 0;
 
   CandidateSums& operator+=(const CandidateSums& b) {
@@ -95,8 +99,7 @@ class CandidateHit {
     for (int c = 0; c < kCandidates; ++c) {
       const float a[] = {list_.a[0][c], list_.a[1][c], list_.a[2][c]};
       float last[kSets];
-      for (int s = 0; s < kSets; ++s)
-        last[s] = a[2] > 0 ? (integral_[s] - a[0] * mean_[s][0][c] - a[1] * mean_[s][1][c]) / a[2] : 0;
+      for (int s = 0; s < kSets; ++s) last[s] = list_.last(c, integral_[s], mean_[s][0][c], mean_[s][1][c]);
       // each set has half of the sum
       const float square[] = {4 * mean_[0][0][c] * mean_[1][0][c], 4 * mean_[0][1][c] * mean_[1][1][c],
                               4 * last[0] * last[1]};

@@ -115,7 +115,7 @@ std::vector<std::string> finding(const json& r) {
     const json ratio = c["equal_samples"].is_object() ? c["equal_samples"]["ratio"] : json();
     if (ratio.is_object() && (sooner || ratio["high"] < 1 || ratio["low"] > 1))
       errors.push_back(fmt::format(
-          "{} {}{}", name, interval(c["equal_samples"]["ratio"]),
+          "{} {}{}", name, interval(ratio),
           c["pilot_apart"] > 0 ? fmt::format(" (its pilot of {} more not counted)", c["pilot_apart"].get<int>()) : ""));
     if (!sooner) continue;
     // a squared error is that of the few worst pixels; what most pixels show may say otherwise

@@ -83,7 +83,6 @@ Cubature::Cell Cubature::make(int chart, double u0, double u1, double v0, double
 }
 
 std::vector<double> Cubature::refine(const Integrands& integrands, double tolerance, size_t more) {
-  const size_t most = cells_.size() + more;
   const auto n = static_cast<size_t>(integrands.count);
   const Rule& r = rule();
   std::vector<double> total(n, 0), h(n);
@@ -128,11 +127,25 @@ std::vector<double> Cubature::refine(const Integrands& integrands, double tolera
     measure(cell);
     for (size_t k = 0; k < n; ++k) total[k] += cell.value[k];
   }
+  for (Cell& cell : cells_) measure(cell);  // again, now that the totals are known
+  halveTheWorst(total, tolerance, more, [&](const Cell& parent) {
+    const double u = 0.5 * (parent.u0 + parent.u1), v = 0.5 * (parent.v0 + parent.v1);
+    Cell one = parent.alongU ? make(parent.chart, parent.u0, u, parent.v0, parent.v1)
+                             : make(parent.chart, parent.u0, parent.u1, parent.v0, v);
+    Cell two = parent.alongU ? make(parent.chart, u, parent.u1, parent.v0, parent.v1)
+                             : make(parent.chart, parent.u0, parent.u1, v, parent.v1);
+    measure(one), measure(two);
+    return std::pair{std::move(one), std::move(two)};
+  });
+  return differences(n);
+}
+
+template <class Halve>
+void Cubature::halveTheWorst(std::vector<double>& total, double tolerance, size_t more, Halve&& halve) {
+  const size_t most = cells_.size() + more, n = total.size();
   std::vector<double> error(n, 0);
-  for (Cell& cell : cells_) {
-    measure(cell);  // again, now that the totals are known
+  for (const Cell& cell : cells_)
     for (size_t k = 0; k < n; ++k) error[k] += cell.error[k];
-  }
   const auto worst = [&](const Cell& cell) {
     double w = 0;
     for (size_t k = 0; k < n; ++k)
@@ -150,13 +163,8 @@ std::vector<double> Cubature::refine(const Integrands& integrands, double tolera
       continue;
     }
     if (!(now > 0) || cells_[c].tiny()) continue;
-    Cell parent = std::move(cells_[c]);
-    const double u = 0.5 * (parent.u0 + parent.u1), v = 0.5 * (parent.v0 + parent.v1);
-    Cell one = parent.alongU ? make(parent.chart, parent.u0, u, parent.v0, parent.v1)
-                             : make(parent.chart, parent.u0, parent.u1, parent.v0, v);
-    Cell two = parent.alongU ? make(parent.chart, u, parent.u1, parent.v0, parent.v1)
-                             : make(parent.chart, parent.u0, parent.u1, v, parent.v1);
-    measure(one), measure(two);
+    const Cell parent = std::move(cells_[c]);
+    auto [one, two] = halve(parent);
     for (size_t k = 0; k < n; ++k) {
       total[k] += one.value[k] + two.value[k] - parent.value[k];
       error[k] += one.error[k] + two.error[k] - parent.error[k];
@@ -166,6 +174,9 @@ std::vector<double> Cubature::refine(const Integrands& integrands, double tolera
     queue.emplace(worst(cells_[c]), c);
     queue.emplace(worst(cells_.back()), cells_.size() - 1);
   }
+}
+
+std::vector<double> Cubature::differences(size_t n) const {
   std::vector<double> difference(n, 0);
   for (const Cell& cell : cells_)
     for (size_t k = 0; k < n; ++k) difference[k] += cell.difference[k] * cell.difference[k];
@@ -245,9 +256,10 @@ std::vector<double> Cubature::splitAtJumps(const Side& side, const Integrands& i
 
   const auto n = static_cast<size_t>(integrands.count);
   const Rule& r = rule();
-  std::vector<double> total(n, 0), error(n, 0), h(n);
+  std::vector<double> total(n, 0), h(n);
   // Along v: the sum over a line is smooth in v, but for where the jump leaves the cell.
-  const auto measure = [&](Cell& cell) {
+  const auto splitAndMeasure = [&](Cell cell) {
+    if (std::optional<Cell> split = makeSplit(cell, side)) cell = std::move(*split);
     cell.value.assign(n, 0), cell.difference.assign(n, 0);
     const bool split = !cell.lines.empty();
     for (size_t m = 0; m < cell.points.size(); ++m) {
@@ -260,54 +272,19 @@ std::vector<double> Cubature::splitAtJumps(const Side& side, const Integrands& i
       }
     }
     for (double& d : cell.difference) d = std::abs(d);
-  };
-  const auto add = [&](const Cell& cell, double sign) {
-    for (size_t k = 0; k < n; ++k) total[k] += sign * cell.value[k], error[k] += sign * cell.difference[k];
+    cell.error = cell.difference;
+    return cell;
   };
   for (Cell& cell : cells_) {
-    if (std::optional<Cell> split = makeSplit(cell, side)) cell = std::move(*split);
-    measure(cell);
-    add(cell, 1);
+    cell = splitAndMeasure(std::move(cell));
+    for (size_t k = 0; k < n; ++k) total[k] += cell.value[k];
   }
-  const auto worst = [&](const Cell& cell) {
-    double w = 0;
-    for (size_t k = 0; k < n; ++k)
-      if (error[k] > tolerance * std::abs(total[k])) w = std::max(w, cell.difference[k] / std::abs(total[k]));
-    return w;
-  };
-  std::priority_queue<std::pair<double, size_t>> queue;
-  for (size_t c = 0; c < cells_.size(); ++c)
-    if (!cells_[c].lines.empty()) queue.emplace(worst(cells_[c]), c);
-  for (const size_t most = cells_.size() + more; !queue.empty() && cells_.size() < most;) {
-    const auto [was, c] = queue.top();
-    queue.pop();
-    const double now = worst(cells_[c]);
-    if (!(now > 0)) continue;
-    if (now < was * (1 - 1e-9)) {  // its integrals have converged meanwhile, or grown
-      queue.emplace(now, c);
-      continue;
-    }
-    const Cell parent = std::move(cells_[c]);
-    add(parent, -1);
-    const double middle = 0.5 * (parent.v0 + parent.v1);
-    for (const auto& [v0, v1] : {std::pair{parent.v0, middle}, {middle, parent.v1}}) {
-      Cell half = make(parent.chart, parent.u0, parent.u1, v0, v1);
-      if (std::optional<Cell> split = makeSplit(half, side)) half = std::move(*split);
-      measure(half);
-      add(half, 1);
-      const size_t to = v0 == parent.v0 ? c : cells_.size();
-      if (to == c)
-        cells_[c] = std::move(half);
-      else
-        cells_.push_back(std::move(half));
-      if (!cells_[to].lines.empty()) queue.emplace(worst(cells_[to]), to);
-    }
-  }
-  std::vector<double> difference(n, 0);
-  for (const Cell& cell : cells_)
-    for (size_t k = 0; k < n; ++k) difference[k] += cell.difference[k] * cell.difference[k];
-  for (double& d : difference) d = std::sqrt(d);
-  return difference;
+  halveTheWorst(total, tolerance, more, [&](const Cell& parent) {
+    const double v = 0.5 * (parent.v0 + parent.v1);
+    return std::pair{splitAndMeasure(make(parent.chart, parent.u0, parent.u1, parent.v0, v)),
+                     splitAndMeasure(make(parent.chart, parent.u0, parent.u1, v, parent.v1))};
+  });
+  return differences(n);
 }
 
 Points Cubature::points() const {

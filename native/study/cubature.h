@@ -41,6 +41,12 @@ class Cubature {
  private:
   struct Cell;
   Cell make(int chart, double u0, double u1, double v0, double v1) const;
+  // Halves the cell with the largest estimated error until each integral's is below `tolerance` of its value, or `more`
+  // cells have been added. total: of each integral, kept up to date; halve: two measured cells in place of one.
+  template <class Halve>
+  void halveTheWorst(std::vector<double>& total, double tolerance, size_t more, Halve&& halve);
+  // Of the two rules, over all cells.
+  std::vector<double> differences(size_t integrals) const;
   // Where along u, between two of the ascending `nodes`, the side changes.
   std::vector<double> jumpsAlong(const Chart& chart, double v, const std::vector<double>& nodes,
                                  const Side& side) const;

@@ -318,20 +318,24 @@ TEST(Render, AutoSeesIndirectLight) {
   expectOfAuto(scene, s, 1.02);
 }
 
+// irradiance: W m^-2; angle: full, in radians.
+void addSunAndSky(Scene& scene, float irradiance, float angle) {
+  Light sun;
+  sun.type = LightType::kSun;
+  sun.emitted = {irradiance, irradiance, irradiance};
+  sun.angle = angle;
+  scene.lights = {sun};
+  scene.world.radiance = {0.5f, 0.5f, 0.5f};
+}
+
 // A plate under an even sky and a wide sun, seen at a grazing angle. All is smooth, so that Sobol's points are at their
 // best, as long as a technique's have one weight each and come in powers of two. With the pilot in the image the ratio
-// to equal counts was 1.24 for a sun that has set, now .42; without whole quarters of a sample 1.69 for one that
-// shines.
+// to equal counts was 1.24 for a sun that has set; without whole quarters of a sample 1.69 for one that shines.
 TEST(Render, AutoKeepsSobolsPointsEven) {
   Scene scene;
   scene.materials = {ward({0.3f, 0.3f, 0.3f}, {0.5f, 0.5f, 0.5f}, 0.1f, WardVariant::kWardGmd)};
   addPlane(scene, 50, 0);
-  scene.world.radiance = {0.5f, 0.5f, 0.5f};
-  Light sun;
-  sun.type = LightType::kSun;
-  sun.emitted = {3, 3, 3};
-  sun.angle = 0.1f;
-  scene.lights = {sun};
+  addSunAndSky(scene, 3, 0.1f);
   RenderSettings s = quick();
   s.integrator = Integrator::kDirect;
   s.spp = 128;
@@ -375,12 +379,7 @@ TEST(Render, AutoKnowsScatterFromShadow) {
     const float x = 0.4f * static_cast<float>(i);
     addMesh(scene, {{x, -5, 3}, {x + 0.2f, -5, 3}, {x + 0.2f, 5, 3}, {x, 5, 3}}, {0, 1, 2, 0, 2, 3}, 0);
   }
-  scene.world.radiance = {0.5f, 0.5f, 0.5f};
-  Light sun;
-  sun.type = LightType::kSun;
-  sun.emitted = {20, 20, 20};
-  sun.angle = 0.009f;
-  scene.lights = {sun};
+  addSunAndSky(scene, 20, 0.009f);
   lookFrom(scene, 0.9f, 1.5f, 16);
   RenderSettings s = quick();
   s.integrator = Integrator::kDirect;

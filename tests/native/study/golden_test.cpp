@@ -79,7 +79,8 @@ TEST(Exact, OptimalWeightsUseATechniqueWithNextToNoSamples) {
 }
 
 // Weights that jump. Planar: cells end at the jumps. Values: numpy, composite Gauss-Legendre between the bisected
-// jumps. Full: each line of nodes is split at the jumps. Values: numpy, 9000 x 9000 midpoints, right to 1e-5.
+// jumps. Full: each line of nodes is split at the jumps. Values: numpy, 6000 x 6000 midpoints and more,
+// right to 1e-5.
 TEST(Exact, JumpingWeights) {
   struct Case {
     const char* model;
