@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import os
 import tempfile
@@ -10,7 +11,9 @@ from pathlib import Path
 from unittest import mock
 
 import bpy
-from support import FAKE, SceneTest
+import numpy as np
+from support import FAKE, SceneTest, read_glb
+from wardmis.comparison import run
 
 SMALL = {"seeds": 2, "max_spp": 2, "cycles_reference_spp": 4}
 
@@ -50,7 +53,32 @@ class ComparisonTest(SceneTest):
     def manifest(self) -> dict:
         return json.loads((self.folder / "cycles" / "manifest.json").read_text(encoding="utf-8"))
 
+    def export_with_noise(self) -> None:
+        """From now on each export differs in the last bits of its normals, as those of large meshes do."""
+        for polygon in self.floor.data.polygons:
+            polygon.use_smooth = True
+        counted, export = itertools.count(1), run.export_scene
+
+        def noisy(path: Path) -> None:
+            export(path)
+            perturb(path, "NORMAL", 1e-7 * next(counted))
+
+        patch = mock.patch.object(run, "export_scene", noisy)
+        patch.start()
+        self.addCleanup(patch.stop)
+
     def make_shiny(self) -> None:
         tree = self.material.node_tree
         node = tree.nodes.new("ShaderNodeBsdfAnisotropic")
         tree.links.new(node.outputs[0], tree.get_output_node("ALL").inputs["Surface"])
+
+
+def perturb(path: Path, attribute: str, by: float) -> None:
+    """Adds `by` to the first number of the first mesh's `attribute`."""
+    document, binary = read_glb(path)
+    accessor = document["accessors"][document["meshes"][0]["primitives"][0]["attributes"][attribute]]
+    data = bytearray(path.read_bytes())
+    at = len(data) - len(binary) + document["bufferViews"][accessor["bufferView"]]["byteOffset"]
+    number = np.frombuffer(data, "<f4", 1, at)
+    number += np.float32(by)
+    path.write_bytes(data)

@@ -124,6 +124,13 @@ class Background(PanelTest):
         fourth = self.compare()
         self.assertEqual(len({first, second, third, fourth}), 4)
 
+    def test_goes_on_although_the_export_has_other_last_bits(self):
+        self.export_with_noise()
+        first = self.compare()
+        scene = (first / "scene.glb").read_bytes()
+        self.assertEqual(self.compare(), first)
+        self.assertEqual((first / "scene.glb").read_bytes(), scene)
+
     def test_one_at_a_time(self):
         with mock.patch.dict(os.environ, {"WARDMIS_FAKE": "slow"}):
             bpy.ops.wardmis.compare()

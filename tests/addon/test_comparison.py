@@ -289,6 +289,14 @@ class Resuming(ComparisonTest):
         self.assertEqual(self.rendered(cycles_seeds=3), 1)
         self.assertEqual(self.rendered(cycles_reference_spp=8), 4)
 
+    def test_goes_on_although_the_export_has_other_last_bits(self):
+        self.export_with_noise()
+        self.assertEqual(self.rendered(), 8)
+        first = (self.folder / "scene.glb").read_bytes()
+        self.assertEqual(self.rendered(), 0)
+        self.assertEqual((self.folder / "scene.glb").read_bytes(), first)
+        self.assertEqual([p.name for p in self.folder.iterdir() if "tmp" in p.name], [])
+
     def test_goes_on_after_a_failure(self):
         failing = mock.patch.object(Manifest, "add_reference", side_effect=RuntimeError("stopped"))
         with failing, self.assertRaisesRegex(RuntimeError, "stopped"):

@@ -6,7 +6,6 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import re
-import shutil
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -20,6 +19,7 @@ from ..properties import ALLOCATIONS
 from . import child, images, job, plot, properties
 from .converge import OWN, Outcome, Study, arguments
 from .run import CYCLES_FOLDER, SCENE_NAME, divide, prepare, scene_title, threads_of
+from .same_scene import same_but_for_rounding, settle
 from .scene_file import read_scene_file
 
 KEY = "J"  # with Shift; alone it turns Blender's own render slots over
@@ -66,10 +66,10 @@ def begin(context: Any) -> job.Job:
         _check_unsaved_images()
     staging = Path(bpy.app.tempdir) / "wardmis-comparison"
     exported = prepare(staging, study).scene
-    folder = home(scene) / _name(study, settings, scene.wardmis, exported)
+    folder = _folder(home(scene), study, settings, scene.wardmis, exported)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        shutil.move(exported, folder / SCENE_NAME)
+        settle(exported, folder / SCENE_NAME)
     except OSError as error:
         raise RuntimeError(
             f"WardMIS: the folder {folder} cannot be written: {error.strerror}; choose another in the panel"
@@ -89,13 +89,17 @@ def begin(context: Any) -> job.Job:
     return job.start(folder, stages, _finished, temporary)
 
 
-def _name(study: Study, settings: Any, render_settings: Any, exported: Path) -> str:
+def _folder(place: Path, study: Study, settings: Any, render_settings: Any, exported: Path) -> Path:
     """The same comparison goes on in the same folder, also with more seeds; another one begins its own."""
     what = arguments(dataclasses.replace(study, seeds=0), render_settings, Outcome(Path(), Path()))
-    what += [read_scene_file(exported).sha256, f"{settings.use_cycles} {settings.cycles_as_is}"]
-    digest = hashlib.sha256("\0".join(what).encode()).hexdigest()
+    what.append(f"{settings.use_cycles} {settings.cycles_as_is}")
     title = re.sub(r"[^\w.-]+", "_", study.title)  # of any letters, but no signs that a folder's name cannot have
-    return f"{title}-{digest[:8]}"
+    name = f"{title}-{hashlib.sha256(chr(0).join(what).encode()).hexdigest()[:8]}"
+    # the export's own hash would tell apart what is the same but for the last bits
+    for earlier in sorted(place.glob(f"{name}-*")):
+        if same_but_for_rounding(exported, earlier / SCENE_NAME):
+            return earlier
+    return place / f"{name}-{read_scene_file(exported).sha256[:8]}"
 
 
 def _check_unsaved_images() -> None:

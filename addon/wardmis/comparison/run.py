@@ -17,6 +17,7 @@ from ..process import Renderer, RendererError
 from .converge import DEFAULT_CONFIGURATIONS, STOPPED, Outcome, Study, arguments
 from .cycles import CyclesPlan, Progress, render_cycles
 from .overrides import Setting, overridden
+from .same_scene import settle
 from .scene_file import read_scene_file
 
 SCENE_NAME = "scene.glb"
@@ -103,7 +104,7 @@ def _resolution(scene: Any, size: tuple[int, int] | None) -> list[Setting]:
 
 
 def prepare(folder: Path, study: Study) -> Outcome:
-    """Checks what is asked for, makes the folder and exports the scene into it."""
+    """Checks what is asked for, makes the folder and exports the scene into it, where it does not hold the same one already."""
     if study.seeds < FEWEST_SEEDS:
         raise RuntimeError(
             f"WardMIS: {study.seeds} seeds cannot tell how sure a figure is; take at least {FEWEST_SEEDS}"
@@ -117,7 +118,16 @@ def prepare(folder: Path, study: Study) -> Outcome:
             f"WardMIS: the folder {folder} cannot be made: {error.strerror}; choose another output folder"
         ) from error
     outcome = Outcome(folder, folder / SCENE_NAME)
-    export_scene(outcome.scene)
+    exported = folder / f".{SCENE_NAME}.{os.getpid()}.tmp"
+    try:
+        export_scene(exported)
+        settle(exported, outcome.scene)
+    except OSError as error:
+        raise RuntimeError(
+            f"WardMIS: {outcome.scene} cannot be written: {error.strerror}; make room, or choose another output folder"
+        ) from error
+    finally:
+        exported.unlink(missing_ok=True)
     return outcome
 
 
