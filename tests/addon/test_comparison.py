@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import itertools
+import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -419,6 +421,65 @@ class Files(unittest.TestCase):
         self.assertEqual(converge.Study(max_spp=48).checkpoints, [1, 2, 4, 8, 16, 32, 48])
 
 
+INTERRUPTS = """
+import os, signal, sys, time
+import bpy, wardmis
+from wardmis.comparison import cycles, run
+render = bpy.context.scene.render
+render.resolution_percentage = 2
+
+def ctrl_c():
+    os.kill(os.getpid(), signal.SIGINT)
+
+def never():
+    pass
+
+def exporting():
+    export = run.export_scene
+    run.export_scene = lambda path: (ctrl_c(), export(path))
+
+def in_render(wanted):
+    def look(*_):
+        if render.engine == "CYCLES" and wanted():
+            ctrl_c()
+            time.sleep(0.2)  # a render that takes its time
+    bpy.app.handlers.render_pre.append(look)
+
+def one_pixel():
+    in_render(lambda: render.use_border)
+
+def rendering():
+    count = []
+    in_render(lambda: not render.use_border and (count.append(1) or len(count) == 2))
+
+def around_save(which, after):
+    count, save = [], cycles._Renders._save
+    def saving(self, path):
+        count.append(path)
+        here = len(count) == which
+        if here and not after:
+            ctrl_c()
+        save(self, path)
+        if here and after:
+            ctrl_c()
+    cycles._Renders._save = saving
+
+def saving():
+    around_save(2, after=False)
+
+def saved():
+    around_save(2, after=True)
+
+def in_the_renderer():
+    note = run._note
+    def noting(event, *others):
+        if event.get("phase") == "runs" and event["done"] == 2:
+            ctrl_c()
+        note(event, *others)
+    run._note = noting
+"""
+
+
 class CommandLine(unittest.TestCase):
     """In a Blender of its own, as ./dev compare starts it."""
 
@@ -427,7 +488,7 @@ class CommandLine(unittest.TestCase):
         self.addCleanup(temporary.cleanup)
         self.folder = Path(temporary.name)
 
-    def run_blender(self, *arguments: str) -> subprocess.CompletedProcess[str]:
+    def run_blender(self, *arguments: str, fake: str = "good") -> subprocess.CompletedProcess[str]:
         (self.folder / "scripts" / "addons").mkdir(parents=True, exist_ok=True)
         link = self.folder / "scripts" / "addons" / "wardmis"
         if not link.exists():
@@ -437,6 +498,7 @@ class CommandLine(unittest.TestCase):
             "BLENDER_USER_SCRIPTS": str(self.folder / "scripts"),
             "BLENDER_USER_CONFIG": str(self.folder / "config"),
             "WARDMIS_BINARY": str(FAKE),
+            "WARDMIS_FAKE": fake,
         }
         command = [bpy.app.binary_path, *arguments]
         return subprocess.run(command, env={**os.environ, **environment}, capture_output=True, text=True, timeout=120)
@@ -456,6 +518,51 @@ class CommandLine(unittest.TestCase):
         done = self.run_blender(*start, "-o", str(self.folder / "out"), "--seeds", "1")
         self.assertEqual(done.returncode, 1)
         self.assertIn("error: WardMIS: 1 seeds cannot", done.stderr)
+
+    def interrupted(self, moment: str, start: str, fake: str = "good") -> subprocess.CompletedProcess[str]:
+        """A comparison, begun by `start`, to which Ctrl-C comes at a moment: a function that INTERRUPTS has."""
+        script = INTERRUPTS + f"{moment}()\n{start}"
+        arguments = ["--background", "--factory-startup", "--addons", "wardmis", "--python-exit-code", "1"]
+        words = ["-o", str(self.folder / "out"), *self.SMALL]
+        return self.run_blender(*arguments, "--python-expr", script, "--", *words, fake=fake)
+
+    def runs_left(self) -> list[dict]:
+        """Of the manifest; each with its image."""
+        manifest = self.folder / "out" / "cycles" / "manifest.json"
+        runs = json.loads(manifest.read_text(encoding="utf-8"))["runs"]
+        for run in runs:
+            self.assertEqual(read_pass(manifest.parent / run["path"]).shape, (21, 38, 4))
+        return runs
+
+    def test_ctrl_c_at_any_moment(self):
+        main = "from wardmis.comparison.command_line import main; sys.exit(main(sys.argv[sys.argv.index('--') + 1 :]))"
+        moments = {"exporting": None, "one_pixel": 0, "rendering": 1, "saving": 2, "saved": 2, "in_the_renderer": 4}
+        for moment, runs in moments.items():
+            with self.subTest(moment):
+                out = self.folder / "out"
+                fake = "slow" if moment == "in_the_renderer" else "good"
+                done = self.interrupted(moment, main, fake)
+                self.assertEqual(done.returncode, 130, done.stdout + done.stderr)
+                self.assertRegex(done.stderr, "(?m)^WardMIS: stopped; .* the same comparison again goes on from there$")
+                self.assertIn(f"stopped; {out} keeps what is done", done.stderr)
+                self.assertNotIn("error", done.stderr)
+                self.assertEqual([p for p in out.rglob("*") if "tmp" in p.name], [])
+                if runs is not None:
+                    self.assertEqual(len(self.runs_left()), runs)
+                done = self.interrupted("never", main)
+                self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+                self.assertEqual(len(self.runs_left()), 4)
+                shutil.rmtree(out)
+
+    def test_a_part_of_an_image_is_no_run(self):
+        """Blender's own answer to a Ctrl-C, where a script calls wardmis.compare(): FINISHED, and a part of the image."""
+        call = (
+            "try: wardmis.compare(sys.argv[-7], seeds=2, max_spp=2)\n"
+            "except wardmis.comparison.interrupt.Stopped as stopped: print(stopped, file=sys.stderr)"
+        )
+        done = self.interrupted("rendering", call)
+        self.assertIn("stopped; ", done.stderr, done.stdout)
+        self.assertEqual(len(self.runs_left()), 1)
 
     @unittest.skipUnless(hasattr(bpy.utils, "register_cli_command"), "came with Blender 4.2")
     def test_command(self):

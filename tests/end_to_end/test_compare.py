@@ -3,8 +3,11 @@
 reference and both agree with it; a glossy one has two, and the difference of the models is no error."""
 
 import json
+import os
+import signal
 import subprocess
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -60,6 +63,36 @@ class Compare(unittest.TestCase):
         self.assertEqual(report["configurations"][-1]["bias"]["verdict"], "none found")
         notes = " ".join(report["configurations"][-1]["notes"])
         self.assertIn("synchronisation", notes)
+
+    def test_stopped_by_ctrl_c_and_gone_on_with(self):
+        """./dev compare, as a terminal sends it, while Cycles renders; the teapot's export has other last bits each time."""
+        with tempfile.TemporaryDirectory() as folder:
+            out = Path(folder) / "study"
+            command = [ROOT / "dev", "compare", "blend/teapot.blend", "-o", out, "-c", "equal", "--seeds", "2"]
+            command += ["--max-spp", "32", "--cycles-reference-spp", "32", "--resolution", "96x64"]
+            pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+            process = subprocess.Popen(command, cwd=ROOT, start_new_session=True, **pipes)
+            self.addCleanup(process.kill)
+            manifest = out / "cycles" / "manifest.json"
+            deadline = time.monotonic() + 120
+            while not (manifest.exists() and json.loads(manifest.read_text())["runs"]):
+                self.assertLess(time.monotonic(), deadline)
+                self.assertIsNone(process.poll())
+                time.sleep(0.02)
+            os.killpg(process.pid, signal.SIGINT)
+            _, said = process.communicate(timeout=60)
+            self.assertEqual(process.returncode, 130, said)
+            self.assertIn(f"WardMIS: stopped; {out} keeps what is done, and the same comparison again goes on", said)
+            self.assertNotIn("error", said)
+            kept = json.loads(manifest.read_text())["runs"]
+            self.assertLess(len(kept), 12)
+            done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, stdin=subprocess.DEVNULL)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            runs = json.loads(manifest.read_text())["runs"]
+            self.assertEqual(len(runs), 12)
+            for run in kept:  # with the times that it had
+                self.assertIn(run, runs)
+            self.assertTrue(json.loads((out / "report.json").read_text())["complete"])
 
     def test_by_the_script(self):
         """./dev compare, as it is documented."""

@@ -15,7 +15,8 @@ from typing import Any
 
 import bpy
 
-from .converge import DEFAULT_CONFIGURATIONS
+from . import interrupt
+from .converge import DEFAULT_CONFIGURATIONS, STOPPED
 from .run import compare
 
 REDRAW_SECONDS = 0.5
@@ -69,8 +70,9 @@ def main(words: list[str], program: str = "wardmis compare") -> int:
     """For the scene that is open. Returns the exit code."""
     options = parser(program).parse_args(words)
     watch = Watch()
+    place = os.path.abspath(options.output)
     try:
-        with _without_blenders_own_progress():
+        with _without_blenders_own_progress(), interrupt.caught(watch.stopped, place):
             outcome = compare(
                 options.output,
                 configurations=options.configuration,
@@ -91,6 +93,9 @@ def main(words: list[str], program: str = "wardmis compare") -> int:
                 threads=options.threads,
                 progress=watch,
             )
+    except interrupt.Stopped as stopped:
+        watch.stopped(str(stopped))
+        return STOPPED
     except RuntimeError as error:
         watch.end()
         print(f"error: {error}", file=sys.stderr)
@@ -142,6 +147,10 @@ class Watch:
                 flush=True,
             )
             self.open = self.terminal
+
+    def stopped(self, message: str) -> None:
+        self.end()
+        print(message, file=sys.stderr, flush=True)
 
     def end(self) -> None:
         if self.open:

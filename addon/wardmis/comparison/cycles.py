@@ -8,16 +8,17 @@ CPU time is this process', less that of renders of a single pixel with one sampl
 
 from __future__ import annotations
 
+import contextlib
 import statistics
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import bpy
 
-from . import cycles_settings
+from . import cycles_settings, interrupt
 from .exr import read_header
 from .manifest import Manifest
 from .overrides import overridden
@@ -177,16 +178,20 @@ class _Renders:
         """Renders; returns the CPU seconds of this process."""
         for owner, name, value in cycles_settings.samples(self.scene, spp, seed, self.plan.as_is):
             setattr(owner, name, value)
+        place = self.manifest.path.parent.parent
         began = time.process_time()
         try:
-            ended = bpy.ops.render.render(scene=self.scene.name, layer=self.layer.name)
+            with interrupt.busy(place), _cancellation() as cancelled:
+                ended = bpy.ops.render.render(scene=self.scene.name, layer=self.layer.name)
+        except interrupt.Stopped:
+            raise
         except RuntimeError as error:
             reason = str(error).strip().removeprefix("Error: ")
             raise RuntimeError(
                 f"WardMIS: Cycles could not render the scene: {reason}; change what stops its own render, too"
             ) from error
-        if "FINISHED" not in ended:
-            raise RuntimeError("WardMIS: stopped while Cycles rendered; the same comparison again goes on from there")
+        if cancelled or "FINISHED" not in ended:
+            raise interrupt.Stopped(place)
         return time.process_time() - began
 
     def _render(self, kind: str, seed: int, spp: int) -> None:
@@ -215,6 +220,21 @@ class _Renders:
     def _stated_seconds(self, name: str) -> float | None:
         text = read_header(self.manifest.path.parent / name).text(f"cycles.{self.layer.name}.render_time")
         return None if text is None else _clock_seconds(text) + CUT_OFF_SECONDS / 2
+
+
+@contextlib.contextmanager
+def _cancellation() -> Iterator[list[bool]]:
+    """Has something in it after a render that was cancelled: Blender says FINISHED of that one too, and has a part of its image."""
+    cancelled: list[bool] = []
+
+    def note(*_: Any) -> None:
+        cancelled.append(True)
+
+    bpy.app.handlers.render_cancel.append(note)
+    try:
+        yield cancelled
+    finally:
+        bpy.app.handlers.render_cancel.remove(note)
 
 
 def _name(kind: str, seed: int, spp: int) -> str:

@@ -14,6 +14,7 @@ import bpy
 from ..operators import export_scene
 from ..preferences import renderer_path
 from ..process import Renderer, RendererError
+from . import interrupt
 from .converge import DEFAULT_CONFIGURATIONS, STOPPED, Outcome, Study, arguments
 from .cycles import CyclesPlan, Progress, render_cycles
 from .overrides import Setting, overridden
@@ -60,7 +61,7 @@ def compare(
     progress         is called with each event, a dictionary as in the command's JSON lines
     The others are the command's options (docs/command.md). The same call again goes on where the last one was stopped.
 
-    Raises RuntimeError with a message for the user.
+    Raises RuntimeError with a message for the user; its subclass interrupt.Stopped where the user has stopped it.
     """
     scene = bpy.context.scene
     study = Study(
@@ -84,7 +85,7 @@ def compare(
         except RendererError as error:
             raise RuntimeError(f"WardMIS: {error}") from error
         if cycles:
-            _check([*command, *arguments(study, scene.wardmis, outcome), "--check"])
+            _check([*command, *arguments(study, scene.wardmis, outcome), "--check"], outcome)
             plan, study = divide(study, cycles_seeds, cycles_reference_spp, as_is)
             outcome.manifest = render_cycles(outcome.folder / CYCLES_FOLDER, read_scene_file(outcome.scene), plan, tell)
         command += arguments(study, scene.wardmis, outcome)
@@ -122,6 +123,7 @@ def prepare(folder: Path, study: Study) -> Outcome:
     try:
         export_scene(exported)
         settle(exported, outcome.scene)
+        interrupt.check(folder)
     except OSError as error:
         raise RuntimeError(
             f"WardMIS: {outcome.scene} cannot be written: {error.strerror}; make room, or choose another output folder"
@@ -166,31 +168,33 @@ def _absolute(path: str | os.PathLike[str] | None) -> Path | None:
     return None if path is None else Path(bpy.path.abspath(os.fspath(path))).absolute()
 
 
-def _check(command: list[str]) -> None:
+def _check(command: list[str], outcome: Outcome) -> None:
     """A mistake in what is asked for shows before Cycles takes its time."""
-    try:
-        with Renderer(command) as renderer:
-            while renderer.running():
-                renderer.events(POLL_SECONDS)
-            renderer.finish()
-    except RendererError as error:
-        raise RuntimeError(f"WardMIS: {error}") from error
+    _run(command, outcome, lambda _event: None)
 
 
 def _converge(command: list[str], outcome: Outcome, tell: Progress) -> None:
+    said = _run(command, outcome, lambda event: _note(event, outcome, tell))
+    if not outcome.report_json.is_file():
+        raise RuntimeError(f"WardMIS: the renderer {command[0]} ended without a report{said}")
+
+
+def _run(command: list[str], outcome: Outcome, note: Progress) -> str:
+    """Until the renderer ends; returns what it said besides events."""
+    interrupted = False
     try:
         with Renderer(command) as renderer:
             while renderer.running():
+                if interrupt.requested() and not interrupted:
+                    interrupted = True
+                    renderer.interrupt()  # it ends with a report of what is done, if that is enough for one
                 for event in renderer.events(POLL_SECONDS):
-                    _note(event, outcome, tell)
-            if renderer.exit_code() == STOPPED:
-                raise RuntimeError(
-                    f"WardMIS: stopped; {outcome.folder} keeps what is done, and the same comparison again goes on from there"
-                )
+                    note(event)
+            if renderer.exit_code() == STOPPED or (interrupted and renderer.exit_code() != 0):
+                raise interrupt.Stopped(outcome.folder)
             for event in renderer.finish():
-                _note(event, outcome, tell)
-            if not outcome.report_json.is_file():
-                raise RendererError(f"the renderer {renderer.path} ended without a report{renderer.said()}")
+                note(event)
+            return renderer.said()
     except RendererError as error:
         raise RuntimeError(f"WardMIS: {error}") from error
 
