@@ -242,7 +242,7 @@ class Reporter {
     if (json t = techniques(); !t.empty()) r["techniques"] = std::move(t);
     if (json m = models(); !m.empty()) r["models"] = std::move(m);
     r["finding"] = finding(r);
-    pictures(a.pictures);
+    pictures(a.pictures, r["configurations"]);
     images(a.images);
     r["images"] = json::array();
     for (const Picture& p : a.pictures) r["images"].push_back(p.description);
@@ -670,6 +670,8 @@ class Reporter {
       };
       wins = {{"better", share(0)}, {"worse", share(1)}, {"undecided", share(2)}};
     }
+    json toTarget = timeToTarget(m);
+    if (!wins.is_null()) wins["text"] = mapRemark(c.name, base_->configuration->name, wins, toTarget);
     return {{"name", c.name},
             {"renderer", c.renderer},
             {"settings", c.described},
@@ -689,7 +691,7 @@ class Reporter {
               {"seed_ratio", m.seeds.tail.seedRatio},
               {"kurtosis", m.seeds.tail.kurtosis},
               {"heavy", m.seeds.tail.heavy()}}},
-            {"time_to_target", timeToTarget(m)},
+            {"time_to_target", std::move(toTarget)},
             {"equal_time", equalTime(m)},
             {"equal_samples", equalSamples(m)},
             {"efficiency", efficiency(m)},
@@ -826,7 +828,8 @@ class Reporter {
     }
   }
 
-  void pictures(std::vector<Picture>& all) const {
+  // `configurations`: the report's, in the order of measured_.
+  void pictures(std::vector<Picture>& all, const json& configurations) const {
     const int w = e_.width, h = e_.height;
     all.push_back(radiancePicture(
         {"reference", "reference", "image", "", fmt::format("The reference: {}.", base_->reference->estimates)},
@@ -869,14 +872,16 @@ class Reporter {
                            "Shares of the samples at first hits: red the lobe, green the cosine, blue the light."},
                           shares, w, h));
     }
-    for (const Measured& m : measured_) {
+    for (size_t k = 0; k < measured_.size(); ++k) {
+      const Measured& m = measured_[k];
       if (m.wins.empty()) continue;
       const Configuration& c = *m.configuration;
+      const std::string remark = configurations[k]["wins"]["text"];
       all.push_back(classesPicture(
           {c.name + "/wins", c.name + " or " + base_->configuration->name, "map", c.name,
            fmt::format("Where relMSE × CPU time is less than with {}: blocks of {} × {} pixels, paired t-tests "
-                       "over the seeds, false discoveries at most 5 %.",
-                       base_->configuration->name, kWinBlock, kWinBlock)},
+                       "over the seeds, false discoveries at most 5 %.{}{}",
+                       base_->configuration->name, kWinBlock, kWinBlock, remark.empty() ? "" : " ", remark)},
           m.wins, w, h,
           {{c.name + " is better", "#0072B2"},
            {base_->configuration->name + " is better", "#D55E00"},

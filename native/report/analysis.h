@@ -19,4 +19,9 @@ Analysis analyse(const Experiment& experiment, const std::function<void(double)>
 // The first paragraph, in words, from the numbers of the report.
 std::vector<std::string> finding(const nlohmann::json& report);
 
+// What to say beside the map of who wins where most of its blocks seem to contradict the finding; else nothing. `wins`
+// and `timeToTarget` are a configuration's in the report.
+std::string mapRemark(const std::string& name, const std::string& baseline, const nlohmann::json& wins,
+                      const nlohmann::json& timeToTarget);
+
 }  // namespace wardmis

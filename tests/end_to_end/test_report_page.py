@@ -158,6 +158,12 @@ class Page(unittest.TestCase):
         self.assertNotRegex(text, r"NaN|undefined|null|Infinity|\[object")
         self.assertEqual(self.count("[data-label=''] .share[aria-label]"), 3 + 4)
 
+    def test_words_beside_the_map(self):
+        self.open()
+        where = self.driver.find_element(By.ID, "where").text
+        self.assertEqual(where.count("although it is"), 1)
+        self.assertIn(report_sample.MAP_REMARK, where)
+
     def test_the_least_has_no_empty_section(self):
         self.open("minimal")
         self.assertEqual(

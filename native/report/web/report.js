@@ -903,6 +903,7 @@
         winners.map((c) => [named(c), percent(c.wins.better), percent(c.wins.worse), percent(c.wins.undecided),
           { is: shareBar(["better", "undecided", "worse"].map((k) => [k, c.wins[k] || 0, looks[k]])), class: "bare" }])),
       h("div", { class: "key" }, ["better", "undecided", "worse"].map((k) => h("span", {}, h("i", { style: `background:${looks[k]}` }), k))),
+      winners.filter((c) => c.wins.text).map((c) => read(c.wins.text)),
     ] : null;
     const tables = KINDS.map(([kind, title]) => {
       const with_ = configurations.filter((c) => (c.groups || []).some((g) => g.kind === kind));
