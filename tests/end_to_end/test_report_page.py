@@ -164,6 +164,11 @@ class Page(unittest.TestCase):
         self.assertEqual(where.count("although it is"), 1)
         self.assertIn(report_sample.MAP_REMARK, where)
 
+    def test_headings_are_whole_when_they_are_read(self):
+        self.open()
+        titles = self.driver.execute_script("return [...document.querySelectorAll('h2')].map(e => e.textContent)")
+        self.assertIn("Models differences, not errors", titles)
+
     def test_the_least_has_no_empty_section(self):
         self.open("minimal")
         self.assertEqual(

@@ -1013,7 +1013,7 @@
     const signed = (x) => (known(x) && x > 0 ? `+${number(x)}` : number(x));
     const agree = (a) => (a === true ? "agree" : a === false ? "differ" : "not tested");
     return h("section", { id: "models", class: "apart", "aria-labelledby": "models-title" },
-      h("h2", { id: "models-title" }, "Models", h("small", {}, "differences, not errors")),
+      h("h2", { id: "models-title" }, "Models", " ", h("small", {}, "differences, not errors")),
       read("Images that have converged, compared with each other. What is left here does not go away with more samples: the renderers compute different things. It says nothing about who converges faster."),
       table("differences of the models", [["Renderer"], ["Against"], ["Relative difference²", "number"], ["Difference²", "number"], ["Mean R", "number"], ["Mean G", "number"], ["Mean B", "number"], ["Test", "word-column"]],
         report.models.map((m) => [m.name, m.against, number(m.difference.relmse), number(m.difference.mse), ...["r", "g", "b"].map((k) => (m.difference.mean ? signed(m.difference.mean[k]) : kNone)), agree(m.agree)])),
