@@ -331,10 +331,18 @@ class Colours(unittest.TestCase):
         np.testing.assert_allclose(image[10, 10], colours.inferno(np.array(1.0)))
         np.testing.assert_allclose(image[3, 4], colours.NOT_A_NUMBER)
         strip = image[:, 40:]
-        self.assertGreater(strip[:, 5].sum(), strip[::-1, 5][:60].sum())
+        self.assertGreater(strip[:, 10].sum(), strip[::-1, 10][:60].sum())
         for top in (1e-4, 0.37, 12345.0, 1e7):
             for height in (1, 4, 8, 333):
                 self.assertEqual(colours.false_colour(np.zeros((height, 3)), top).shape[0], height)
+
+    def test_numbers_can_be_read_and_leave_the_image_its_place(self):
+        for height, tall in ((36, 5), (120, 10), (270, 10), (480, 20), (1080, 30), (4000, 30)):
+            strip = colours.false_colour(np.zeros((height, 4)), 0.5)[:, 4:]
+            written = np.isclose(strip, 0.9).all(axis=2).any(axis=1)  # rows with parts of numbers
+            edges = np.flatnonzero(np.diff(np.concatenate([[False], written, [False]]).astype(int)))
+            self.assertEqual((edges[1::2] - edges[::2]).tolist(), 5 * [tall], height)
+            self.assertLess(strip.shape[1], max(2 * height / 3, 40))  # a third of an image of 2 : 1
 
     def test_difference(self):
         a, b = np.full((2, 2, 4), 3.0), np.full((2, 2, 4), 1.0)

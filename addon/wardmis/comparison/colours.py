@@ -20,7 +20,10 @@ INFERNO = np.array(
 NOT_A_NUMBER = (0.0, 0.6, 1.0)  # a blue that inferno has not
 EPSILON = 0.01  # as in relMSE
 
-LONGEST_LABEL = 8  # 1.23e-04
+# of the scale's letters, in pixels of the image a pixel of theirs: legible where the image is shown as large as it is
+SMALLEST_LETTERS, LARGEST_LETTERS = 2, 6
+HEIGHT_OF_LETTERS = 100  # of the image, for each such pixel
+SPACE_OF_LETTERS = 35  # in the height, which five numbers need
 # three by five pixels each, a row a string
 GLYPHS = {
     "0": "### #.# #.# #.# ###",
@@ -64,10 +67,11 @@ def false_colour(values: np.ndarray, top: float) -> np.ndarray:
 
 def _scale(height: int, top: float) -> np.ndarray:
     """A strip with the colours of 0 (below) to `top`, and five numbers beside."""
-    size = max(1, height // 150)  # of the pixels of a glyph
+    wanted = min(max(height // HEIGHT_OF_LETTERS, SMALLEST_LETTERS), LARGEST_LETTERS)
+    size = max(1, min(wanted, height // SPACE_OF_LETTERS))  # of the pixels of a glyph
     labels = [f"{top * k / 4:.3g}" for k in range(5)]
     gap, bar = 4 * size, 8 * size
-    width = gap + bar + gap + LONGEST_LABEL * 4 * size
+    width = gap + bar + gap + max(map(len, labels)) * 4 * size
     strip = np.full((height, width, 3), 0.05)
     strip[:, gap : gap + bar] = inferno(np.linspace(1, 0, height))[:, None]
     for k, label in enumerate(labels):
