@@ -312,6 +312,65 @@ class Settings(unittest.TestCase):
         self.assertLessEqual(set(panels.VERDICT_ICONS.values()), set(known))
 
 
+class Layout:
+    """Stands in for Blender's, of which there is none in the background: what is shown, and that no label is cut off."""
+
+    def __init__(self) -> None:
+        self.shown: list[str] = []
+        self.labels: list[str] = []
+
+    def label(self, text: str = "", icon: str = "NONE") -> None:
+        self.labels.append(("    " if icon != "NONE" else "") + text)
+
+    def prop(self, _owner, name: str, **_) -> None:
+        self.shown.append(name)
+
+    def operator(self, name: str, **_):
+        self.shown.append(name)
+        return types.SimpleNamespace()
+
+    def part(self, **_) -> Layout:
+        return self
+
+    row = column = box = grid_flow = part
+
+
+class Sidebar(PanelTest):
+    """The Image Editor's, as narrow as it opens."""
+
+    def draw(self, panel: type) -> Layout:
+        layout, region = Layout(), types.SimpleNamespace(width=200)
+        preferences = types.SimpleNamespace(system=types.SimpleNamespace(ui_scale=1))  # 0 without a window
+        context = types.SimpleNamespace(region=region, preferences=preferences, scene=self.scene)
+        blender = types.SimpleNamespace(context=context)
+        with mock.patch.object(panels, "bpy", blender):
+            panel.draw(types.SimpleNamespace(layout=layout), context)
+        return layout
+
+    def test_has_the_choices_of_the_properties_editor(self):
+        choices = [
+            layout.shown
+            for layout in map(self.draw, (panels.WARDMIS_IMAGE_PT_compare, panels.WARDMIS_RENDER_PT_compare))
+        ]
+        self.assertEqual(choices[0], choices[1])
+        for name in ("allocations", "use_scene", "stop_by", "samples", "seeds", "use_cycles", "wardmis.compare"):
+            self.assertIn(name, choices[0])
+
+    def test_table_fits_and_its_signs_are_explained(self):
+        self.assertFalse(panels.WARDMIS_IMAGE_PT_results.poll(bpy.context))
+        wardmis.compare(self.folder, cycles=False, **SMALL)
+        bpy.ops.wardmis.compare_open(directory=str(self.folder))
+        self.assertTrue(panels.WARDMIS_IMAGE_PT_results.poll(bpy.context))
+        labels = self.draw(panels.WARDMIS_IMAGE_PT_results).labels
+        self.assertLessEqual(max(map(len, labels)), 22, labels)
+        self.assertIn("    second-moment", labels)
+        said = " ".join(label.strip() for label in labels)
+        self.assertIn("variance 0.008 × 0.80 (0.72–0.88)", said)
+        self.assertIn("The signs: whether a relMSE of 0.01 is reached faster than by equal", said)
+        self.assertIn("equal faster", said)
+        self.assertIn("whether the target is reached", panels.legend_text("relMSE", None, "equal"))
+
+
 class Colours(unittest.TestCase):
     def test_inferno_is_matplotlibs(self):
         expected = {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The Compare panel: in the render properties, and in the Image Editor's sidebar where its images are looked at."""
+"""The Compare panel: in the render properties, and in the Image Editor's sidebar, where its results are a panel of their own."""
 
 from __future__ import annotations
 
@@ -18,6 +18,40 @@ VERDICT_ICONS = {
     "target not reached": "QUESTION",
 }
 TEXT_WIDTH = 7  # pixels of a letter, about, at a scale of the interface of 1
+ICON_LETTERS = 4  # whose place an icon takes
+NARROW = 320  # pixels, at such a scale: a sidebar as it opens; names beside their fields, and two columns, are cut off in less
+
+
+def draw_choices(layout: Any, settings: Any) -> None:
+    """Configurations, and how much of each."""
+    body = layout.column()
+    body.enabled = not job.running()
+    body.use_property_split = not _narrow()
+    body.use_property_decorate = False
+    grid = body.grid_flow(columns=1 if _narrow() else 2, align=True)
+    grid.use_property_split = False
+    grid.prop(settings, "allocations")
+    row = body.row()
+    row.use_property_split = False
+    row.prop(settings, "use_scene", toggle=True)
+    body.row().prop(settings, "stop_by", expand=True)
+    body.prop(settings, settings.stop_by)
+    body.prop(settings, "seeds")
+    if _narrow():
+        column = body.column()
+        column.prop(settings, "use_cycles", text="Compare With Cycles")
+    else:
+        column = body.column(heading="Cycles")
+        column.prop(settings, "use_cycles", text="Compare With")
+    sub = column.column()
+    sub.active = settings.use_cycles
+    sub.prop(settings, "cycles_as_is")
+    sub.prop(settings, "cycles_seeds", text="Seeds of Cycles" if _narrow() else "Seeds")
+    if _narrow():
+        body.label(text="Folder:")
+        body.prop(settings, "folder", text="")
+    else:
+        body.prop(settings, "folder")
 
 
 def draw_progress(layout: Any) -> None:
@@ -57,34 +91,47 @@ def draw_results(layout: Any) -> None:
 
 
 def _draw_table(box: Any, report: Any) -> None:
-    """Two lines a configuration: the sidebar is narrow."""
+    """The name of a configuration, and its figures below: the sidebar is narrow."""
     seconds, target, rows = report.equal_seconds, report.target, report.rows()
+    baseline = report.data.get("baseline", "")
     if seconds is not None:
         kind = " of CPU time" if report.clock == "cpu" else ""
-        baseline = report.data.get("baseline", "")
         draw_text(box, f"{report.metric} after {seconds:.3g} s{kind}; its ratio to that of {baseline}, 95 %:")
     if not report.data.get("complete", True):
         draw_text(box, "Of a comparison that was stopped", "INFO")
     table = box.column(align=True)
     for row in rows:
-        line = table.row()
-        line.label(text=row.name, icon=VERDICT_ICONS.get(row.verdict, "BLANK1"))
-        value = line.row()
-        value.alignment = "RIGHT"
-        value.label(text=row.error)
-        if row.ratio:
-            table.label(text=f"× {row.ratio}", icon="BLANK1")
+        table.label(text=row.name, icon=VERDICT_ICONS.get(row.verdict, "BLANK1"))
+        figures = f"{row.error} × {row.ratio}" if row.ratio else row.error
+        if figures:
+            draw_text(table, figures, "BLANK1")
+    verdicts = [verdict for verdict in VERDICT_ICONS if any(row.verdict == verdict for row in rows)]
+    if not verdicts:
+        return
     legend = box.column(align=True)
     legend.active = False
-    for verdict, icon in VERDICT_ICONS.items():
-        if any(row.verdict == verdict for row in rows):
-            legend.label(text=f"to {target:.3g}: {verdict}" if target is not None else verdict, icon=icon)
+    draw_text(legend, legend_text(report.metric, target, baseline))
+    for verdict in verdicts:
+        legend.label(text=verdict, icon=VERDICT_ICONS[verdict])
+
+
+def legend_text(metric: str, target: float | None, baseline: str) -> str:
+    """What the signs beside the configurations are about."""
+    until = "the target" if target is None else f"a {metric} of {target:.3g}"
+    return f"The signs: whether {until} is reached faster than by {baseline}"
+
+
+def _narrow() -> bool:
+    region = bpy.context.region
+    return bool(region) and region.width < NARROW * bpy.context.preferences.system.ui_scale
 
 
 def draw_text(layout: Any, text: str, icon: str = "NONE") -> None:
     """Over as many lines as it needs: labels are cut off."""
     region, scale = bpy.context.region, bpy.context.preferences.system.ui_scale
     letters = max(20, int(region.width / (TEXT_WIDTH * scale)) - 6) if region else 60
+    if icon != "NONE":
+        letters -= ICON_LETTERS
     lines = [""]
     for word in text.split():
         if lines[-1] and len(lines[-1]) + 1 + len(word) > letters:
@@ -100,27 +147,7 @@ class WARDMIS_RENDER_PT_compare(RenderPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: Any) -> None:
-        settings = context.scene.wardmis_comparison
-        body = self.layout.column()
-        body.enabled = not job.running()
-        body.use_property_split = True
-        body.use_property_decorate = False
-        grid = body.grid_flow(columns=2, align=True)
-        grid.use_property_split = False
-        grid.prop(settings, "allocations")
-        row = body.row()
-        row.use_property_split = False
-        row.prop(settings, "use_scene", toggle=True)
-        body.row().prop(settings, "stop_by", expand=True)
-        body.prop(settings, settings.stop_by)
-        body.prop(settings, "seeds")
-        column = body.column(heading="Cycles")
-        column.prop(settings, "use_cycles", text="Compare With")
-        sub = column.column()
-        sub.active = settings.use_cycles
-        sub.prop(settings, "cycles_as_is")
-        sub.prop(settings, "cycles_seeds")
-        body.prop(settings, "folder")
+        draw_choices(self.layout, context.scene.wardmis_comparison)
         draw_progress(self.layout)
         draw_results(self.layout)
 
@@ -132,14 +159,31 @@ class WARDMIS_IMAGE_PT_compare(bpy.types.Panel):
     bl_category = "WardMIS"
     layout: Any
 
-    def draw(self, _context: Any) -> None:
-        self.layout.use_property_split = True
-        self.layout.use_property_decorate = False
+    def draw(self, context: Any) -> None:
+        draw_choices(self.layout, context.scene.wardmis_comparison)
         draw_progress(self.layout)
+
+
+class WARDMIS_IMAGE_PT_results(bpy.types.Panel):
+    """Apart, so that the choices can be folded away while the images are looked at."""
+
+    bl_label = "Results"
+    bl_space_type = "IMAGE_EDITOR"
+    bl_region_type = "UI"
+    bl_category = "WardMIS"
+    layout: Any
+
+    @classmethod
+    def poll(cls, _context: Any) -> bool:
+        return properties.report() is not None
+
+    def draw(self, _context: Any) -> None:
+        self.layout.use_property_split = not _narrow()
+        self.layout.use_property_decorate = False
         draw_results(self.layout)
 
 
-_CLASSES = (WARDMIS_RENDER_PT_compare, WARDMIS_IMAGE_PT_compare)
+_CLASSES = (WARDMIS_RENDER_PT_compare, WARDMIS_IMAGE_PT_compare, WARDMIS_IMAGE_PT_results)
 
 
 def register() -> None:
