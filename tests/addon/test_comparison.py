@@ -241,6 +241,39 @@ class CyclesSettings(ComparisonTest):
         self.assertEqual(self.scene.cycles.seed, 0)
 
 
+class Denoising(ComparisonTest):
+    """By a Blender that was built without the denoiser: the render would be refused."""
+
+    def setUp(self) -> None:
+        super().setUp()
+        import _cycles
+
+        patch = mock.patch.object(_cycles, "with_openimagedenoise", False)
+        patch.start()
+        self.addCleanup(patch.stop)
+        self.scene.cycles.use_denoising = True
+
+    def test_is_left_out_where_cycles_is_as_set_and_that_is_said(self):
+        outcome = wardmis.compare(self.folder, as_is=True, **SMALL)
+        data = self.manifest()
+        said = "Cycles' images are not denoised, .* this Blender was built without Open Image Denoise"
+        self.assertRegex(" ".join(data["notes"]), said)
+        self.assertRegex(outcome.warnings[0], said)
+        self.assertIs(data["settings"]["use_denoising"], False)
+        self.assertEqual(len(data["runs"]), 4)
+        self.assertIs(self.scene.cycles.use_denoising, True)  # still the user's
+        wardmis.compare(self.folder, as_is=True, **SMALL)  # and it goes on
+
+    def test_is_off_anyway_otherwise(self):
+        outcome = wardmis.compare(self.folder, **SMALL)
+        self.assertNotIn("Open Image Denoise", " ".join(self.manifest()["notes"] + outcome.warnings))
+
+    def test_is_not_missed_by_a_scene_without(self):
+        self.assertTrue(cycles_settings.lacks_denoiser(self.scene))
+        self.scene.cycles.use_denoising = False
+        self.assertFalse(cycles_settings.lacks_denoiser(self.scene))
+
+
 class Times(ComparisonTest):
     def test_are_stated_where_they_are_known(self):
         wardmis.compare(self.folder, **SMALL)

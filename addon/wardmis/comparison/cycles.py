@@ -30,6 +30,10 @@ REFERENCE_SEED = 1_000_003
 CUT_OFF_SECONDS = 0.01  # Cycles states its time without what is below
 ONE_PIXEL_RENDERS = 3
 CERTAIN = 5  # a CPU time is stated where it is so many times as large as what the synchronisation varies by
+WITHOUT_DENOISER = (
+    "Cycles' images are not denoised, as the scene's settings would have it: this Blender was built without Open Image Denoise; "
+    "use one from blender.org to compare with denoising"
+)
 
 Progress = Callable[[dict[str, Any]], None]
 
@@ -54,16 +58,22 @@ def render_cycles(folder: Path, scene_file: SceneFile, plan: CyclesPlan, progres
         )
     folder.mkdir(parents=True, exist_ok=True)
     settings = list(cycles_settings.frame(scene, layer, scene_file.film, plan.threads))
+    lost = []  # of the settings that are to be kept
     if not plan.as_is:
         settings += cycles_settings.unbiased(scene, cycles_settings.bounces_of(scene.wardmis))
+    elif cycles_settings.lacks_denoiser(scene):
+        settings.append((scene.cycles, "use_denoising", False))
+        lost.append(WITHOUT_DENOISER)
+        progress({"event": "warning", "message": WITHOUT_DENOISER})
     with overridden(settings):
-        manifest = Manifest(folder / "manifest.json", _about(scene, layer, scene_file, plan), plan.reference_spp)
+        about = _about(scene, layer, scene_file, plan, lost)
+        manifest = Manifest(folder / "manifest.json", about, plan.reference_spp)
         manifest.write()
         _Renders(scene, layer, manifest, plan, progress).run()
     return manifest.path
 
 
-def _about(scene: Any, layer: Any, scene_file: SceneFile, plan: CyclesPlan) -> dict[str, Any]:
+def _about(scene: Any, layer: Any, scene_file: SceneFile, plan: CyclesPlan, lost: list[str]) -> dict[str, Any]:
     different = scene_file.other_than_blenders()
     notes = [
         "seconds are those that Cycles states as its render time: without the synchronisation of the scene, to 0.01 s",
@@ -73,6 +83,7 @@ def _about(scene: Any, layer: Any, scene_file: SceneFile, plan: CyclesPlan) -> d
         notes.append(
             "Cycles' settings are the scene's own, with whatever bias they bring; only filter, frame, seed and samples are set"
         )
+        notes += lost
     else:
         notes.append(
             "clamping, filtered glossiness, light threshold, adaptive sampling, denoising, fast GI and shadow terminator offsets are off; "

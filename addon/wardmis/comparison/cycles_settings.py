@@ -78,6 +78,14 @@ def unbiased(scene: Any, bounces: int) -> Iterator[Setting]:
         yield owner, "shadow_terminator_offset", 0.0
 
 
+def lacks_denoiser(scene: Any) -> bool:
+    """Whether the scene is to be denoised by what this Blender was built without: Cycles then renders nothing at all. Debian's is one."""
+    import _cycles  # type: ignore[import-not-found] # there where Cycles is
+
+    cycles = scene.cycles
+    return bool(cycles.use_denoising and cycles.denoiser != "OPTIX" and not _cycles.with_openimagedenoise)
+
+
 def bounces_of(settings: Any) -> int:
     """Cycles' number for WardMIS' depth, which counts the surfaces that a path hits, the first one included."""
     return 0 if settings.integrator == "direct" else settings.max_depth - 1

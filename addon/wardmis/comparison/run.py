@@ -78,6 +78,10 @@ def compare(
         threads_of(scene) if threads is None else threads,
     )
     tell = progress or (lambda _event: None)
+
+    def note(event: dict[str, Any]) -> None:
+        _note(event, outcome, tell)
+
     with overridden(_resolution(scene, resolution)):
         outcome = prepare(Path(bpy.path.abspath(os.fspath(output))).absolute(), study)
         try:
@@ -87,9 +91,10 @@ def compare(
         if cycles:
             _check([*command, *arguments(study, scene.wardmis, outcome), "--check"], outcome)
             plan, study = divide(study, cycles_seeds, cycles_reference_spp, as_is)
-            outcome.manifest = render_cycles(outcome.folder / CYCLES_FOLDER, read_scene_file(outcome.scene), plan, tell)
+            renders = outcome.folder / CYCLES_FOLDER
+            outcome.manifest = render_cycles(renders, read_scene_file(outcome.scene), plan, note)
         command += arguments(study, scene.wardmis, outcome)
-        _converge(command, outcome, tell)
+        _converge(command, outcome, note)
         return outcome
 
 
@@ -173,8 +178,8 @@ def _check(command: list[str], outcome: Outcome) -> None:
     _run(command, outcome, lambda _event: None)
 
 
-def _converge(command: list[str], outcome: Outcome, tell: Progress) -> None:
-    said = _run(command, outcome, lambda event: _note(event, outcome, tell))
+def _converge(command: list[str], outcome: Outcome, note: Progress) -> None:
+    said = _run(command, outcome, note)
     if not outcome.report_json.is_file():
         raise RuntimeError(f"WardMIS: the renderer {command[0]} ended without a report{said}")
 
