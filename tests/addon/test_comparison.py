@@ -532,7 +532,9 @@ class CommandLine(unittest.TestCase):
             "BLENDER_USER_CONFIG": str(self.folder / "config"),
             "WARDMIS_BINARY": str(FAKE),
             "WARDMIS_FAKE": fake,
+            "TMPDIR": str(self.folder / "temporary"),
         }
+        (self.folder / "temporary").mkdir(exist_ok=True)
         command = [bpy.app.binary_path, *arguments]
         return subprocess.run(command, env={**os.environ, **environment}, capture_output=True, text=True, timeout=120)
 
@@ -579,6 +581,7 @@ class CommandLine(unittest.TestCase):
                 self.assertRegex(done.stderr, "(?m)^WardMIS: stopped; .* the same comparison again goes on from there$")
                 self.assertIn(f"stopped; {out} keeps what is done", done.stderr)
                 self.assertNotIn("error", done.stderr)
+                self.assertEqual(list((self.folder / "temporary").glob("blender_*")), [])
                 self.assertEqual([p for p in out.rglob("*") if "tmp" in p.name], [])
                 if runs is not None:
                     self.assertEqual(len(self.runs_left()), runs)

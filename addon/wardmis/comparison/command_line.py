@@ -8,6 +8,7 @@ import contextlib
 import json
 import os
 import re
+import shutil
 import sys
 import time
 from collections.abc import Iterator
@@ -70,9 +71,14 @@ def main(words: list[str], program: str = "wardmis compare") -> int:
     """For the scene that is open. Returns the exit code."""
     options = parser(program).parse_args(words)
     watch = Watch()
-    place = os.path.abspath(options.output)
+    place, temporary = os.path.abspath(options.output), bpy.app.tempdir
+
+    def end(message: str) -> None:
+        watch.stopped(message)
+        shutil.rmtree(temporary, ignore_errors=True)  # Blender's own end does it
+
     try:
-        with _without_blenders_own_progress(), interrupt.caught(watch.stopped, place):
+        with _without_blenders_own_progress(), interrupt.caught(end, place):
             outcome = compare(
                 options.output,
                 configurations=options.configuration,
