@@ -60,7 +60,8 @@ void SettingOptions::add(CLI::App& app) {
       ->check(CLI::Range(1, kMaxSamplesPerHit))
       ->capture_default_str();
   app.add_option("--pilot-spp", numbers_.pilotSpp,
-                 "camera samples per pixel that estimate the moments; auto takes at most a 16th, beside the image's")
+                 "camera samples per pixel that estimate the moments; auto takes more beyond 64 samples, at most a "
+                 "16th, beside the image's")
       ->check(CLI::Range(0u, 1u << 20))
       ->capture_default_str();
   app.add_option("--min-fraction", numbers_.minFraction, "no technique gets less than this share; not for auto")

@@ -3,6 +3,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include <map>
+
 namespace wardmis {
 
 std::pair<HitMoments, CandidateSums> Pilot::smoothed(int x, int y) const {
@@ -25,6 +27,9 @@ std::pair<HitMoments, CandidateSums> Pilot::smoothed(int x, int y) const {
 std::vector<PixelFractions> Pilot::fractions(Allocation rule, Integrand integrand, TechniqueMask available,
                                              float minimum, const CandidateLists& lists, const SampleCost& cost) const {
   std::vector<PixelFractions> result(pixels.size());
+  std::map<std::pair<int, uint32_t>, GainScatter> surfaces;  // by material and placement
+  for (size_t i = 0; i < candidates.size(); ++i)
+    surfaces[{pixels[i].surface.material, pixels[i].surface.placement}] += candidates[i];
   tbb::parallel_for(0, height, [&](int y) {
     for (int x = 0; x < width; ++x) {
       const auto [m, sums] = smoothed(x, y);
@@ -33,7 +38,7 @@ std::vector<PixelFractions> Pilot::fractions(Allocation rule, Integrand integran
       auto& [surface, a] = result[index];
       surface = pixels[index].surface;
       if (rule == Allocation::kAuto) {
-        a = chooseCandidate(sums, lists.of(mask), cost);
+        a = chooseCandidate(sums, surfaces.at({surface.material, surface.placement}), lists.of(mask), cost);
         continue;
       }
       a = integrand == Integrand::kJoint ? allocate(rule, m.specular, mask, minimum)

@@ -4,6 +4,7 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <bit>
+#include <cmath>
 #include <condition_variable>
 #include <mutex>
 #include <thread>
@@ -18,10 +19,14 @@ constexpr uint32_t kWhole = 16;  // a pilot of this part of a render, or less, i
 
 uint32_t targetOf(const RenderSettings& s) { return s.seconds > 0 ? ~uint32_t{0} : s.spp; }
 // Of a render of `target` samples: at most half of them, and none of one sample. One that is no part of the image is to
-// cost little, too.
+// cost little, too, and grows like the root of their number: what a wrong choice costs grows with the samples that
+// follow it, and falls with the pilot's.
 uint32_t pilotOf(const RenderSettings& s, uint32_t target) {
-  const uint32_t most = s.allocation == Allocation::kAuto ? std::max(target / kWhole, 1u) : target / 2;
-  return std::min({s.pilotSpp, most, target / 2});
+  if (s.allocation != Allocation::kAuto) return std::min(s.pilotSpp, target / 2);
+  constexpr double kUsual = 64;  // samples for which pilotSpp is meant
+  const double growth = s.seconds > 0 ? 1 : std::max(1.0, std::sqrt(target / kUsual));
+  const double most = std::min(std::max(target / kWhole, 1u), target / 2);
+  return static_cast<uint32_t>(std::min(s.pilotSpp * growth, most));
 }
 
 // Calls a function every quarter of a second from a thread of its own, until destroyed.

@@ -24,9 +24,10 @@ CandidateLists::CandidateLists(int samplesPerHit) {
     }
 }
 
-Fractions chooseCandidate(const CandidateSums& sums, const CandidateList& list, const SampleCost& cost) {
+Fractions chooseCandidate(const CandidateSums& sums, const GainScatter& surface, const CandidateList& list,
+                          const SampleCost& cost) {
   constexpr float kSigmas = 2;     // standard errors of the gain
-  constexpr float kLeastHits = 8;  // fewer say nothing of their own noise
+  constexpr float kLeastHits = 8;  // fewer say nothing of their own noise; so many more are the surface's
   if (!(sums.hits >= kLeastHits)) return list.at(0);
   const auto objective = [&](int c) {
     const Fractions a = list.at(c);
@@ -39,9 +40,11 @@ Fractions chooseCandidate(const CandidateSums& sums, const CandidateList& list, 
   int best = 0;
   const float equal = objective(0);
   float most = 0;  // the largest gain that is sure, not the largest: that of many candidates is half luck
-  for (int c = 1; c < kCandidates; ++c)
-    if (const float sure = equal - objective(c) - kSigmas * std::sqrt(sums.gain2[c]); sure > most)
-      best = c, most = sure;
+  for (int c = 1; c < kCandidates; ++c) {
+    const double gain2 = double(sums.gain2[c]) + double(kLeastHits) * surface.gain2[c] / surface.hits;
+    const float sure = equal - objective(c) - kSigmas * static_cast<float>(std::sqrt(gain2));
+    if (sure > most) best = c, most = sure;
+  }
   return list.at(best);
 }
 

@@ -3,6 +3,8 @@
 // the least. The candidates' sums are made while the pilot runs, so that its samples need not be kept.
 #pragma once
 
+#include <numeric>
+
 #include "mis/moments.h"
 
 namespace wardmis {
@@ -62,6 +64,17 @@ struct CandidateSums {
   }
 };
 
+// The scatter of the gains over all hits of a surface: what a few of them are not likely to meet.
+struct GainScatter {
+  double gain2[kCandidates]{}, hits = 0;
+
+  GainScatter& operator+=(const CandidateSums& b) {
+    for (int c = 0; c < kCandidates; ++c) gain2[c] += double(b.gain2[c]);
+    hits += double(b.hits);
+    return *this;
+  }
+};
+
 // The samples of a technique at a hit of the pilot: two, each of a set that estimates by itself.
 inline constexpr int kSets = 2;
 
@@ -88,13 +101,15 @@ class CandidateHit {
   // A light sample that serves two integrands: E[(f_s/q_s + f_d/q_d)^2] has their product twice, with the light's a.
   void addBoth(float fs, float fd, const Fractions& p, const Fractions& n) {
     if (!(fs > 0) || !(fd > 0)) return;
-    const float w = 2 * fs * (fd / (n[0] * p[0] + n[1] * p[1] + n[2] * p[2])) * p[2];
+    const float w = 2 * fs * (fd / (n[0] * p[0] + n[1] * p[1] + n[2] * p[2]));
     for (int c = 0; c < kCandidates; ++c) {
-      const float light = list_.a[2][c] * p[2];
-      value_[c] += list_.a[2][c] * w / ((list_.a[0][c] * p[0] + light) * (list_.a[1][c] * p[1] + light));
+      const float light = list_.a[2][c] * p[2];  // of a far edge of a light it may be 1e-25: its square is no float
+      value_[c] += light / (list_.a[0][c] * p[0] + light) * (w / (list_.a[1][c] * p[1] + light));
     }
   }
   void addTo(CandidateSums& sums, const SampleCost& cost) const {
+    const float all = std::accumulate(value_, value_ + kCandidates, 0.0f);
+    if (!(all < 1e18f)) return;  // its square, or it, is beyond float: it would be all that a surface says
     float equal = 0;
     for (int c = 0; c < kCandidates; ++c) {
       const float a[] = {list_.a[0][c], list_.a[1][c], list_.a[2][c]};
@@ -120,7 +135,10 @@ class CandidateHit {
 };
 
 // The candidate whose gain in predicted variance x cost over equal counts, less two of the gain's standard errors, is
-// the largest; equal counts where none is above nothing, or where hits are too few to tell.
-Fractions chooseCandidate(const CandidateSums& sums, const CandidateList& list, const SampleCost& cost);
+// the largest; equal counts where none is above nothing, or where hits are too few to tell. The errors are those of
+// `sums` and of 8 more hits with the scatter of the whole `surface`, on which `sums` lies: rare bright samples that a
+// neighbourhood did not meet show elsewhere on it.
+Fractions chooseCandidate(const CandidateSums& sums, const GainScatter& surface, const CandidateList& list,
+                          const SampleCost& cost);
 
 }  // namespace wardmis

@@ -363,6 +363,7 @@ TEST(Render, APilotApartIsCounted) {
     EXPECT_EQ(stats.counts.cameraRays, film.pixels.size() * (spp + pilot));
   };
   ran(Allocation::kAuto, SamplerType::kSobol, 64, 4);
+  ran(Allocation::kAuto, SamplerType::kSobol, 256, 8);
   ran(Allocation::kAuto, SamplerType::kIndependent, 32, 2);
   ran(Allocation::kAuto, SamplerType::kSobol, 8, 1);
   ran(Allocation::kSecondMoment, SamplerType::kSobol, 64, 0);

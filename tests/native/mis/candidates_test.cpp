@@ -30,7 +30,8 @@ Fractions choose(const WardCase& c, int hits, const Fractions& cost, uint64_t se
       }
     hit.addTo(sums, {0, cost});
   }
-  return chooseCandidate(sums, all, {0, cost});
+  GainScatter surface;
+  return chooseCandidate(sums, surface += sums, all, {0, cost});
 }
 
 // Measured N Var of one estimate with these fractions.
@@ -85,7 +86,7 @@ TEST(Candidates, BeatEqualCountsWhereTheoryDoes) {
 
 TEST(Candidates, FallBackToEqualCountsWhereTheGainIsNoise) {
   const Fractions equal = all.at(0);
-  EXPECT_EQ(chooseCandidate({}, all, {1, 1, 1}), equal);
+  EXPECT_EQ(chooseCandidate({}, {}, all, {1, 1, 1}), equal);
   int fallen = 0;
   for (const auto& json : golden()["three_technique_cases"])
     for (uint64_t seed = 0; seed < 10; ++seed) fallen += choose(WardCase(json), 1, {1, 1, 1}, seed) == equal ? 1 : 0;
@@ -126,6 +127,43 @@ TEST(Candidates, PredictTheVarianceOfSplitIntegrands) {
     EXPECT_NEAR(double(sums.mean[1][c]) / hits, 1.5 * d, 0.02 * d);
   }
   EXPECT_NEAR(double(sums.integral) / hits, 2.5, 0.03);
+}
+
+// What is rare and bright: the neighbourhood did not meet it, the rest of its surface did.
+TEST(Candidates, AGainHasTheScatterOfItsSurface) {
+  const Fractions n{2, 2, 2};
+  const auto add = [&](CandidateSums& sums, float f, const Fractions& p) {
+    CandidateHit hit(all);
+    for (int set = 0; set < kSets; ++set) hit.add(f, p, n, kAllTechniques, set);
+    hit.addTo(sums, {1, 1, 1});
+  };
+  CandidateSums here;
+  for (int h = 0; h < 200; ++h) add(here, h % 2 == 0 ? 1.0f : 1.1f, {4, 0.1f, 0.1f});
+  GainScatter calm, rare;
+  calm += here;
+  CandidateSums elsewhere = here;
+  add(elsewhere, 1000, {0, 0.1f, 4});  // the light alone finds it
+  rare += elsewhere;
+  EXPECT_GT(chooseCandidate(here, calm, all, {1, 1, 1})[0], 0.5f);
+  EXPECT_EQ(chooseCandidate(here, rare, all, {1, 1, 1}), all.at(0));
+}
+
+// A slit far away sees the edge of a light under 1e-25: the square of that is no float, and a single NaN among the sums
+// was all that the surface said.
+TEST(Candidates, HitsBeyondFloatDoNotSpoilTheOthers) {
+  const Fractions n{2, 2, 2};
+  CandidateSums sums;
+  for (const Fractions& p : {Fractions{1e-18f, 1e-25f, 1e-25f}, Fractions{1e-24f, 1e-25f, 1e-25f},
+                             Fractions{0, 0, 1e-30f}, Fractions{1, 1, 1}}) {
+    CandidateHit hit(all);
+    for (int set = 0; set < kSets; ++set) {
+      hit.add(1e-18f, p, n, kSpecularTechniques, set), hit.add(1e-18f, p, n, kDiffuseTechniques, set);
+      hit.addBoth(1e-18f, 1e-18f, p, n);
+    }
+    hit.addTo(sums, {1, 1, 1});
+    for (int c = 0; c < kCandidates; ++c) EXPECT_TRUE(std::isfinite(sums.gain2[c]) && std::isfinite(sums.within[c]));
+  }
+  EXPECT_EQ(sums.hits, 3);  // all but the third
 }
 
 TEST(Candidates, AnExpensiveTechniqueGetsLess) {
