@@ -157,11 +157,9 @@ std::string mapRemark(const std::string& name, const std::string& baseline, cons
   const bool sooner = timeToTarget["verdict"] == "faster", later = timeToTarget["verdict"] == "slower";
   if (!(sooner && worse > better) && !(later && better > worse)) return "";
   return fmt::format(
-      "{} reaches the target {} than {}, although it is {} on more of the map ({:.3g} % better, {:.3g} % worse, {:.3g} "
-      "% "
-      "undecided): both are true, since the map counts each block alike, however small its error, whereas the target "
-      "is "
-      "a mean over the image, which the few blocks with the largest errors decide.",
+      "{} reaches the target {} than {}, although it is {} on more of the map ({:.3g} % better, {:.3g} % worse, "
+      "{:.3g} % undecided): both are true, since the map counts each block alike, however small its error, "
+      "whereas the target is a mean over the image, which the few blocks with the largest errors decide.",
       name, sooner ? "sooner" : "later", baseline, sooner ? "worse" : "better", 100 * better, 100 * worse,
       100 * wins["undecided"].get<double>());
 }

@@ -24,11 +24,12 @@ NARROW = 320  # pixels, at such a scale: a sidebar as it opens; names beside the
 
 def draw_choices(layout: Any, settings: Any) -> None:
     """Configurations, and how much of each."""
+    narrow = _narrow()
     body = layout.column()
     body.enabled = not job.running()
-    body.use_property_split = not _narrow()
+    body.use_property_split = not narrow
     body.use_property_decorate = False
-    grid = body.grid_flow(columns=1 if _narrow() else 2, align=True)
+    grid = body.grid_flow(columns=1 if narrow else 2, align=True)
     grid.use_property_split = False
     grid.prop(settings, "allocations")
     row = body.row()
@@ -37,7 +38,7 @@ def draw_choices(layout: Any, settings: Any) -> None:
     body.row().prop(settings, "stop_by", expand=True)
     body.prop(settings, settings.stop_by)
     body.prop(settings, "seeds")
-    if _narrow():
+    if narrow:
         column = body.column()
         column.prop(settings, "use_cycles", text="Compare With Cycles")
     else:
@@ -46,8 +47,8 @@ def draw_choices(layout: Any, settings: Any) -> None:
     sub = column.column()
     sub.active = settings.use_cycles
     sub.prop(settings, "cycles_as_is")
-    sub.prop(settings, "cycles_seeds", text="Seeds of Cycles" if _narrow() else "Seeds")
-    if _narrow():
+    sub.prop(settings, "cycles_seeds", text="Seeds of Cycles" if narrow else "Seeds")
+    if narrow:
         body.label(text="Folder:")
         body.prop(settings, "folder", text="")
     else:
