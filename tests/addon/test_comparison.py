@@ -339,13 +339,18 @@ class Resuming(ComparisonTest):
         self.assertEqual(len(self.manifest()["runs"]), 4)
         self.assertEqual(self.rendered(), 4)
 
-    def test_another_scene_is_refused(self):
-        wardmis.compare(self.folder, **SMALL)
+    def test_another_scene_is_refused_and_takes_nothing_with_it(self):
+        self.rendered()
+        scene = self.folder / "scene.glb"
+        kept, place = scene.read_bytes(), self.camera.location.z
         self.camera.location.z = 4
-        with self.assertRaisesRegex(
-            RuntimeError, "holds renders of another comparison: scene_sha256 was .* choose another output"
-        ):
-            wardmis.compare(self.folder, **SMALL)
+        for cycles in (True, False):
+            with self.assertRaisesRegex(RuntimeError, "holds a comparison of another scene.* choose another output"):
+                wardmis.compare(self.folder, **{**SMALL, "cycles": cycles})
+        self.assertEqual(scene.read_bytes(), kept)
+        self.assertEqual([p.name for p in self.folder.iterdir() if p.suffix == ".tmp"], [])
+        self.camera.location.z = place
+        self.assertEqual(self.rendered(), 0)
 
     def test_damaged_manifest_is_named(self):
         (self.folder / "cycles").mkdir(parents=True)

@@ -23,6 +23,7 @@ from .scene_file import read_scene_file
 
 SCENE_NAME = "scene.glb"
 CYCLES_FOLDER = "cycles"
+RENDERED = ("study.json", f"{CYCLES_FOLDER}/manifest.json")  # a folder with one of them has renders of its scene
 REFERENCE_FACTOR = 8  # samples of each of Cycles' reference images, over the largest number of a run
 FEWEST_SEEDS = 2
 FEWEST_SAMPLES = 2
@@ -110,7 +111,10 @@ def _resolution(scene: Any, size: tuple[int, int] | None) -> list[Setting]:
 
 
 def prepare(folder: Path, study: Study) -> Outcome:
-    """Checks what is asked for, makes the folder and exports the scene into it, where it does not hold the same one already."""
+    """Checks what is asked for, makes the folder and exports the scene into it, where it does not hold the same one already.
+
+    Refuses a folder with renders of another scene.
+    """
     if study.seeds < FEWEST_SEEDS:
         raise RuntimeError(
             f"WardMIS: {study.seeds} seeds cannot tell how sure a figure is; take at least {FEWEST_SEEDS}"
@@ -127,8 +131,14 @@ def prepare(folder: Path, study: Study) -> Outcome:
     exported = folder / f".{SCENE_NAME}.{os.getpid()}.tmp"
     try:
         export_scene(exported)
-        settle(exported, outcome.scene)
+        rendered = any((folder / name).exists() for name in RENDERED)
+        settle(exported, outcome.scene, rendered=rendered)
         interrupt.check(folder)
+    except FileExistsError as error:
+        raise RuntimeError(
+            f"WardMIS: {folder} holds a comparison of another scene, which stays as it is; "
+            "choose another output folder, or delete that one"
+        ) from error
     except OSError as error:
         raise RuntimeError(
             f"WardMIS: {outcome.scene} cannot be written: {error.strerror}; make room, or choose another output folder"

@@ -21,10 +21,15 @@ ROUNDING = 4e-6
 BOUNDS = ("min", "max")  # of an accessor's values, which are compared themselves
 
 
-def settle(exported: Path, place: Path) -> None:
-    """Moves `exported` to `place`, unless the file there is the same scene: then that one stays, bit for bit. OSError if it cannot."""
+def settle(exported: Path, place: Path, *, rendered: bool = False) -> None:
+    """Moves `exported` to `place`, unless the file there is the same scene: then that one stays, bit for bit.
+
+    OSError if it cannot; FileExistsError where the file there is another scene that has been `rendered`.
+    """
     if same_but_for_rounding(exported, place):
         exported.unlink()
+    elif rendered and place.exists():
+        raise FileExistsError(place)
     else:
         shutil.move(exported, place)
 
