@@ -27,7 +27,8 @@ CandidateLists::CandidateLists(int samplesPerHit) {
 Fractions chooseCandidate(const CandidateSums& sums, const GainScatter& surface, const CandidateList& list,
                           const SampleCost& cost) {
   constexpr float kSigmas = 2;     // standard errors of the gain
-  constexpr float kLeastHits = 8;  // fewer say nothing of their own noise; so many more are the surface's
+  constexpr float kLeastHits = 8;  // fewer say nothing of their own noise
+  constexpr double kSurfaceHits = 16;
   if (!(sums.hits >= kLeastHits)) return list.at(0);
   const auto objective = [&](int c) {
     const Fractions a = list.at(c);
@@ -41,7 +42,7 @@ Fractions chooseCandidate(const CandidateSums& sums, const GainScatter& surface,
   const float equal = objective(0);
   float most = 0;  // the largest gain that is sure, not the largest: that of many candidates is half luck
   for (int c = 1; c < kCandidates; ++c) {
-    const double gain2 = double(sums.gain2[c]) + double(kLeastHits) * surface.gain2[c] / surface.hits;
+    const double gain2 = double(sums.gain2[c]) + kSurfaceHits * surface.gain2[c] / surface.hits;
     const float sure = equal - objective(c) - kSigmas * static_cast<float>(std::sqrt(gain2));
     if (sure > most) best = c, most = sure;
   }

@@ -136,7 +136,7 @@ class CandidateHit {
 
 // The candidate whose gain in predicted variance x cost over equal counts, less two of the gain's standard errors, is
 // the largest; equal counts where none is above nothing, or where hits are too few to tell. The errors are those of
-// `sums` and of 8 more hits with the scatter of the whole `surface`, on which `sums` lies: rare bright samples that a
+// `sums` and of 16 more hits with the scatter of the whole `surface`, on which `sums` lies: rare bright samples that a
 // neighbourhood did not meet show elsewhere on it.
 Fractions chooseCandidate(const CandidateSums& sums, const GainScatter& surface, const CandidateList& list,
                           const SampleCost& cost);
