@@ -94,7 +94,7 @@ inline std::vector<Loops> loops() {
 struct Directions {
   static constexpr float kAx = 0.3f, kAy = 0.1f;
   Vec3f wo{0.6f, 0, 0.8f};
-  std::vector<float> u1, u2, x, y, z, fCos, pdf;
+  std::vector<float> u1, u2, x, y, z, fCos, pdf, sampledX, sampledY, sampledZ;
 
   explicit Directions(int n) {
     Random random(1);
@@ -105,13 +105,15 @@ struct Directions {
                                   : Vec3f{static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)};
       u1.push_back(u.x), u2.push_back(u.y), x.push_back(wi.x), y.push_back(wi.y), z.push_back(wi.z);
     }
-    fCos.resize(u1.size()), pdf.resize(u1.size());
+    for (std::vector<float>* result : {&fCos, &pdf, &sampledX, &sampledY, &sampledZ}) result->resize(u1.size());
   }
   int count() const { return static_cast<int>(u1.size()); }
   void evaluate(Evaluate f, WardVariant v = WardVariant::kWardGmd) {
     f(v, {count(), x.data(), y.data(), z.data(), fCos.data(), pdf.data()}, wo, 1 / kAx, 1 / kAy);
   }
-  void sample(Sample f) { f({count(), u1.data(), u2.data(), x.data(), y.data(), z.data()}, wo, kAx, kAy); }
+  void sample(Sample f) {
+    f({count(), u1.data(), u2.data(), sampledX.data(), sampledY.data(), sampledZ.data()}, wo, kAx, kAy);
+  }
 };
 
 // Seconds of one call: on a machine with other work, the least of many is the nearest to the truth. What is compared is
