@@ -99,7 +99,11 @@ json statisticsJson(const std::string& path, const RenderSettings& settings, con
             {"cosine", c.cosineRays},
             {"shadow", c.shadowRays},
             {"total", c.rays()}}},
-          {"counts", {{"nan", c.rare.nan}, {"infinite", c.rare.infinite}, {"negative", c.rare.negative}}},
+          {"counts",
+           {{"nan", c.rare.nan},
+            {"infinite", c.rare.infinite},
+            {"negative", c.rare.negative},
+            {"underflow", c.underflows}}},
           {"needs", describe(s.needs)},
           {"kernel", describe(s.kernel)},
           {"allocated", s.allocated},
@@ -235,8 +239,11 @@ int run(Options& o) {
   reporter.event(
       {{"event", "done"}, {"path", output}, {"seconds", since(start)}, {"samples", film.samples}, {"stats", stats}});
   if (!reporter.json())
-    fmt::print("{}: {} samples per pixel, {:.2f} s (pilot {:.2f} s), {} rays\n", output, film.samples,
-               st.pilotSeconds + st.renderSeconds, st.pilotSeconds, stats["rays"]["total"].get<uint64_t>());
+    fmt::print("{}: {} samples per pixel, {:.2f} s (pilot {:.2f} s), {} rays{}\n", output, film.samples,
+               st.pilotSeconds + st.renderSeconds, st.pilotSeconds, st.counts.rays(),
+               st.counts.underflows > 0
+                   ? fmt::format(", {} lobe densities that underflow, as they must", st.counts.underflows)
+                   : "");
   return 0;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <new>
 
 #include "integrate/interaction.h"
@@ -21,13 +22,15 @@ struct Counts {
   std::array<uint64_t, kTechniques> samples{};    // at the first hit
   std::array<uint64_t, kTechniques> following{};  // rays of the paths that went on from samples of each technique
   uint64_t cameraRays = 0, lobeRays = 0, cosineRays = 0, shadowRays = 0;
+  // Directions above the surface at which the lobe's density is no normal number: e^-E is smaller than any.
+  uint64_t underflows = 0;
   RareCounts rare;
 
   uint64_t rays() const { return cameraRays + lobeRays + cosineRays + shadowRays; }
   Counts& operator+=(const Counts& b) {
     for (int i = 0; i < kTechniques; ++i) samples[i] += b.samples[i], following[i] += b.following[i];
     cameraRays += b.cameraRays, lobeRays += b.lobeRays, cosineRays += b.cosineRays, shadowRays += b.shadowRays;
-    rare += b.rare;
+    underflows += b.underflows, rare += b.rare;
     return *this;
   }
 };
@@ -184,7 +187,10 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     const Vec3<T> wi = batch.wi(k);
     if (!(wi.z > T(0))) continue;  // below the surface: zero, and it counts
     WardValue<T> ward{0, 0};
-    if (specular) ward = vectorised ? WardValue<T>{batch.specular[k], batch.lobe[k]} : evaluateWard(s, wi, wo);
+    if (specular) {
+      ward = vectorised ? WardValue<T>{batch.specular[k], batch.lobe[k]} : evaluateWard(s, wi, wo);
+      counts.underflows += ward.pdf < std::numeric_limits<T>::min() ? 1 : 0;
+    }
     const float cosine = static_cast<float>(wi.z) * (1 / kPi<float>);  // f_d cos for rho_d = 1, and p_2
     const Rgb fs = s.specular * static_cast<float>(ward.fCos);
     const Rgb fd = s.diffuse * cosine;

@@ -406,6 +406,26 @@ TEST(Render, CountsWhatItSpends) {
   EXPECT_EQ(stats.counts.rare.total(), 0);
 }
 
+// A lobe of 1 degree is below the smallest float at most directions, one of 45 degrees at none.
+TEST(Render, CountsUnderflows) {
+  const auto underflows = [](float alpha) {
+    RenderSettings s = quick();
+    s.integrator = Integrator::kDirect;
+    Scene scene;
+    scene.materials = {ward({0.5f, 0.5f, 0.5f}, {0.2f, 0.2f, 0.2f}, alpha, WardVariant::kWardGmd)};
+    addPlane(scene, 50, 0);
+    addCosineSky(scene, 32);
+    lookFrom(scene, 0.4f, 1, 16);
+    Statistics stats;
+    renderScene(scene, s, &stats);
+    const Counts& c = stats.counts;
+    EXPECT_LE(c.underflows, c.samples[kCosine] + c.samples[kLight]);  // the lobe's own are near its peak
+    return double(c.underflows) / double(c.samples[kCosine] + c.samples[kLight]);
+  };
+  EXPECT_EQ(underflows(1), 0);
+  EXPECT_GT(underflows(0.015f), 0.8);
+}
+
 // Only what the scene needs: no pilot where there is nothing to allocate, and no techniques that nothing asks for.
 TEST(Render, LeavesOutWhatIsNotNeeded) {
   Scene scene;
