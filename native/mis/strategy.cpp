@@ -124,20 +124,25 @@ Densities minimiseOverSimplex(int n, const F& objective) {
         for (int k = i + 1; k < n; ++k) {
           const auto f = [&](double x) { return objective(exchange(a, i, k, x)); };
           constexpr int kSteps = 36;
+          constexpr double kStep = 2 * kSpan / kSteps;
           double at0 = 0, low = kInfinity;
-          for (int s = 0; s <= kSteps; ++s) {
-            const double x = -kSpan + 2 * kSpan * s / kSteps, v = f(x);
-            if (v < low) low = v, at0 = x;
+          if (round == 0) {
+            for (int s = 0; s <= kSteps; ++s) {
+              const double x = -kSpan + s * kStep, v = f(x);
+              if (v < low) low = v, at0 = x;
+            }
+          } else {  // near where it was
+            at0 = std::clamp(std::log(a[at(i)] / a[at(k)]), -kSpan, kSpan), low = f(at0);
           }
-          const double step = 2 * kSpan / kSteps;
           const auto [x, v] =
-              boost::math::tools::brent_find_minima(f, std::max(-kSpan, at0 - step), std::min(kSpan, at0 + step), 40);
+              boost::math::tools::brent_find_minima(f, std::max(-kSpan, at0 - kStep), std::min(kSpan, at0 + kStep), 40);
           if (std::min(v, low) < value) {
             a = exchange(a, i, k, v < low ? x : at0);
             value = std::min(v, low);
           }
         }
       if (!(value < before * (1 - 1e-10))) break;
+      if (std::abs(value / bestValue - 1) < 1e-8) break;  // where another start has been
     }
     if (value < bestValue) best = a, bestValue = value;
   }
@@ -150,32 +155,72 @@ double meanCost(const Densities& a, const Densities* cost, int n) {
   return c;
 }
 
-// integral f^2/q - mu^2, as a sum of squares.
-double oneSampleVariance(const Densities& a, const Points& points, double mu) {
-  const int n = points.techniques;
-  double outside = 0;
-  for (int i = 0; i < n; ++i) outside += a[at(i)] * points.outside[at(i)];
-  return points.integrate([&](const Point& x) {
-    const double q = mixture(a, x.p, n);
-    return q > 0 ? square(x.f / q - mu) * q : 0;
-  }) + outside * mu * mu;
-}
+// What a search over fractions reads hundreds of times of each point, without what it does not read.
+template <int N>
+struct Node {
+  double w, f;
+  std::array<double, N> p;
+};
 
-// N Var with balance weights: sum_i a_i Var_{p_i}[f/q].
-double balanceVariance(const Densities& a, const Points& points) {
-  const int n = points.techniques;
-  Densities mean{}, variance{};
-  for (const Point& x : points.list) {
-    const double q = mixture(a, x.p, n), share = q > 0 ? x.w * (x.f / q) : 0;
-    for (int i = 0; i < n; ++i) mean[at(i)] += share * x.p[at(i)];
+template <int N>
+class Nodes {
+ public:
+  explicit Nodes(const Points& points) : outside_(points.outside) {
+    list_.reserve(points.list.size());
+    for (const Point& x : points.list) {
+      Node<N>& node = list_.emplace_back(Node<N>{x.w, x.f, {}});
+      std::copy_n(x.p.begin(), N, node.p.begin());
+    }
+    h_.resize(list_.size());
   }
-  for (const Point& x : points.list) {
-    const double q = mixture(a, x.p, n), h = q > 0 ? x.f / q : 0;
-    for (int i = 0; i < n; ++i) variance[at(i)] += x.w * x.p[at(i)] * square(h - mean[at(i)]);
+
+  // integral f^2/q - mu^2, as a sum of squares.
+  double oneSampleVariance(const Densities& a, double mu) const {
+    double outside = 0, sum = 0;
+    for (int i = 0; i < N; ++i) outside += a[at(i)] * outside_[at(i)];
+    for (const Node<N>& x : list_) {
+      const double q = mixture(a, x);
+      if (q > 0) sum += x.w * square(x.f / q - mu) * q;
+    }
+    return sum + outside * mu * mu;
   }
-  double sum = 0;
-  for (int i = 0; i < n; ++i) sum += a[at(i)] * (variance[at(i)] + points.outside[at(i)] * square(mean[at(i)]));
-  return sum;
+
+  // N Var with balance weights: sum_i a_i Var_{p_i}[f/q].
+  double balanceVariance(const Densities& a) {
+    std::array<double, N> mean{}, variance{};
+    for (size_t j = 0; j < list_.size(); ++j) {
+      const Node<N>& x = list_[j];
+      const double q = mixture(a, x);
+      h_[j] = q > 0 ? x.f / q : 0;
+      for (int i = 0; i < N; ++i) mean[at(i)] += x.w * h_[j] * x.p[at(i)];
+    }
+    for (size_t j = 0; j < list_.size(); ++j)
+      for (int i = 0; i < N; ++i)
+        variance[at(i)] += list_[j].w * list_[j].p[at(i)] * square(h_[j] - mean[at(i)]);
+    double sum = 0;
+    for (int i = 0; i < N; ++i) sum += a[at(i)] * (variance[at(i)] + outside_[at(i)] * square(mean[at(i)]));
+    return sum;
+  }
+
+ private:
+  static double mixture(const Densities& a, const Node<N>& x) {
+    double q = 0;
+    for (int k = 0; k < N; ++k) q += a[at(k)] * x.p[at(k)];
+    return q;
+  }
+
+  std::vector<Node<N>> list_;
+  std::vector<double> h_;  // f/q
+  Densities outside_;
+};
+
+// Calls f with the points as Nodes of their number of techniques.
+template <int N = 1, class F>
+auto withNodes(const Points& points, F&& f) {
+  if constexpr (N < kMaxTechniques)
+    if (points.techniques > N) return withNodes<N + 1>(points, f);
+  Nodes<N> nodes(points);
+  return f(nodes);
 }
 
 // The solution of A tau = b, A_ik = <p_i, p_k> and b_i = <f, p_i> under 1/q, with what lies outside the domain, where
@@ -323,14 +368,18 @@ Densities fractions(Allocation rule, const Points& points, const IntegrandMoment
   Densities a{};
   switch (rule) {
     case A::kEqualised:
-      return minimiseOverSimplex(n, [&](const Densities& f) {
-        return (oneSampleVariance(f, points, m.integral) + (cost != nullptr ? square(m.integral) : 0)) *
-               meanCost(f, cost, n);
+      return withNodes(points, [&](const auto& nodes) {
+        return minimiseOverSimplex(n, [&](const Densities& f) {
+          return (nodes.oneSampleVariance(f, m.integral) + (cost != nullptr ? square(m.integral) : 0)) *
+                 meanCost(f, cost, n);
+        });
       });
     case A::kBest:
     case A::kAuto:
-      return minimiseOverSimplex(n,
-                                 [&](const Densities& f) { return balanceVariance(f, points) * meanCost(f, cost, n); });
+      return withNodes(points, [&](auto& nodes) {
+        return minimiseOverSimplex(
+            n, [&](const Densities& f) { return nodes.balanceVariance(f) * meanCost(f, cost, n); });
+      });
     case A::kSecondOrder:
       if (n != 2) return equalFractions(n);
       a = secondOrder(points);
@@ -454,7 +503,7 @@ double logVariance(Weights rule, const Densities& a, const Points& points, const
 
 double logVarianceOneSample(const Densities& a, const Points& points) {
   const double mu = points.integrate([](const Point& x) { return x.f; });
-  return std::log(oneSampleVariance(a, points, mu));
+  return std::log(withNodes(points, [&](const auto& nodes) { return nodes.oneSampleVariance(a, mu); }));
 }
 
 std::array<int, kMaxTechniques> wholeCounts(const Densities& a, int techniques, int n) {
