@@ -66,7 +66,22 @@ inline WardValue<T> wardEvaluate(Vec3<T> wi, Vec3<T> wo, T invAx, T invAy) {
   return {above ? half.template fCos<V>(ci, co) : T(0), above ? half.pdf() : T(0)};
 }
 
-// The same where the variant is known at run time only.
+// f_s alone, rho_s = 1, sr^-1: from f_s cos it could not be had at cosines so small that the product underflows.
+template <class T>
+inline T wardF(WardVariant variant, Vec3<T> wi, Vec3<T> wo, T invAx, T invAy) {
+  if (!(wi.z > T(0)) || !(wo.z > T(0))) return T(0);
+  const WardHalf<T> half(wi, wo, invAx, invAy);
+  switch (variant) {
+    case WardVariant::kWard:
+      return T(0.25) * half.e / std::sqrt(wi.z) / std::sqrt(wo.z);  // K/4 e^-E / sqrt(ci co)
+    case WardVariant::kWardDur:
+      return T(0.25) * half.e / wi.z / wo.z;  // K/4 e^-E / (ci co)
+    default:
+      return half.e * half.slope / half.hz / half.hz;  // K e^-E |h|^2 / h.z^4
+  }
+}
+
+// The same as wardEvaluate<V>() where the variant is known at run time only.
 template <class T>
 inline WardValue<T> wardEvaluate(WardVariant variant, Vec3<T> wi, Vec3<T> wo, T invAx, T invAy) {
   switch (variant) {

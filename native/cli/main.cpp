@@ -79,7 +79,7 @@ int main(int argc, char** argv) {
     return fail(json, e.code, e.what(), e.hint);
   } catch (const std::bad_alloc&) {
     return fail(json, ExitCode::kMemory, "out of memory",
-                "close other programs, lower the resolution, or simplify the scene");
+                "close other programs, or ask for less: a lower resolution, a simpler scene, fewer samples");
   } catch (const std::exception& e) {
     return fail(json, ExitCode::kFile, e.what(), "");
   }

@@ -30,8 +30,8 @@ Values<T> lobe(const StudyInput& s, Vec3<T> wi, Vec3<T> wo) {
                               : s.brdf == StudyBrdf::kWardDur ? WardVariant::kWardDur
                                                               : WardVariant::kWardGmd;
   const T invAx = T(1) / T(s.alphaX), invAy = T(1) / T(s.alphaY);
-  const WardValue<T> v = wardEvaluate(variant, wi, wo, invAx, invAy);
-  return {v.fCos / wi.z, v.pdf, wardLogPdf(wi, wo, invAx, invAy), wardWeight(variant, wi, wo)};
+  const T pdf = wardEvaluate(variant, wi, wo, invAx, invAy).pdf;
+  return {wardF(variant, wi, wo, invAx, invAy), pdf, wardLogPdf(wi, wo, invAx, invAy), wardWeight(variant, wi, wo)};
 }
 
 template <class T>
@@ -74,7 +74,8 @@ bool parse(std::string_view line, uint64_t number, std::string_view names, std::
     const std::string_view word = line.substr(0, line.find_first_of(kBlank));
     line.remove_prefix(word.size());
     double value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    const bool plus = word.size() > 1 && word[0] == '+' && word[1] != '-';  // which from_chars does not know
+    const auto [end, error] = std::from_chars(word.data() + (plus ? 1 : 0), word.data() + word.size(), value);
     if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value))
       refuse(fmt::format("'{}' is no finite number that a double can hold", shown(word)));
     if (found < numbers.size()) numbers[found] = value;

@@ -79,16 +79,6 @@ StabilityResult measure(const StabilityCell& cell, const StabilitySubject& subje
 // Sidak: the level of one of n independent tests whose false alarms together have probability kFalseAlarms.
 double levelOfOne(int n) { return -std::expm1(std::log1p(-threshold::kFalseAlarms) / std::max(1, n)); }
 
-// |z| that a normal variable exceeds with that probability.
-double zOf(double level) {
-  double lo = 0, hi = 40;
-  for (int i = 0; i < 60; ++i) {
-    const double z = 0.5 * (lo + hi);
-    (std::erfc(z / std::sqrt(2.0)) > level ? lo : hi) = z;
-  }
-  return hi;
-}
-
 void judge(StabilityResult& r, const StabilityReport& report) {
   const auto verdict = [&](Check c, bool good) { r.checked[at(c)] = true, r.failed[at(c)] = !good; };
   const bool gmd = r.cell.input.brdf == StudyBrdf::kWardGmd;

@@ -2,6 +2,8 @@
 #include "study/stability_estimators.h"
 
 #include <algorithm>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 
@@ -26,7 +28,17 @@ double eventsOf(const Strategy& s, const Exact& exact, const Densities& counts, 
   return fourth > 0 ? trials * variance * variance / fourth : std::numeric_limits<double>::infinity();
 }
 
+// |z| that a normal variable exceeds as often as |t| is exceeded with so many degrees of freedom.
+double normalFromStudent(double t, int freedom) {
+  const double level = 2 * boost::math::cdf(boost::math::complement(boost::math::students_t(freedom), t));
+  return zOf(std::max(level, 1e-300));
+}
+
 }  // namespace
+
+double zOf(double level) {
+  return boost::math::quantile(boost::math::complement(boost::math::normal(), 0.5 * level));
+}
 
 EstimatorReport measureEstimators(const Problem& problem, int samples, int trials, uint64_t seed) {
   const int n = problem.techniques();
@@ -87,12 +99,14 @@ EstimatorReport measureEstimators(const Problem& problem, int samples, int trial
       s.events = std::min(s.events, hits);
     }
     const bool enough =
-        s.events >= (given ? kEventsGiven : kEventsOwn) && (given || run.estimate.varianceError() < 0.15 * s.variance);
+        s.events >= (given ? kEventsGiven : kEventsOwn) &&
+        (given || (trials >= kTrialsOwn && run.estimate.varianceError() < 0.15 * s.variance));
     // the larger of the two standard errors: rare events make the measured one too small more often than too large
     double error = run.estimate.error();
     if (run.predictedVariance) error = std::max(error, std::sqrt(*run.predictedVariance / trials));
     error += 1e-10 * mu;  // what quadrature and rounding leave
     s.z = enough && !s.biased ? (run.estimate.mean() - mu) / error : std::nan("");
+    if (!run.predictedVariance && s.measurable()) s.z = std::copysign(normalFromStudent(std::abs(s.z), trials - 1), s.z);
     if (!std::isfinite(run.estimate.mean())) s.z = std::numeric_limits<double>::infinity();
     report.strategies.push_back(s);
   }

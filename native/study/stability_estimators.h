@@ -12,7 +12,9 @@ struct StrategyReport {
   bool sound = true;         // fractions sum to 1; N Var is finite and not negative
   bool equalCounts = false;  // though it is no strategy of equal counts
   double logVariance = 0;    // ln(N Var)
-  double z = 0;              // of the mean; NaN where it is not measurable
+  // Of the mean, as a normal variable: where its error is the trials' own, that of Student's t at the same level. NaN
+  // where it is not measurable.
+  double z = 0;
   // About how many events the trials' variance rests on (one over the mean's kurtosis): few where a technique meets
   // what it is to find in one of thousands of trials. The mean then says nothing, and is not judged.
   double events = 0;
@@ -32,6 +34,10 @@ struct EstimatorReport {
 // Means are judged where their variance rests on at least so many events: of strategies whose variance is predicted,
 // and of those that learn from their samples, of which every technique must also meet the light so often.
 inline constexpr double kEventsGiven = 100, kEventsOwn = 2000;
+// And of the latter on so many trials, whose scatter is all that says how sure their mean is.
+inline constexpr int kTrialsOwn = 100;
+
+double zOf(double level);  // |z| that a normal variable exceeds with that probability
 
 EstimatorReport measureEstimators(const Problem& problem, int samples, int trials, uint64_t seed);
 
