@@ -195,8 +195,7 @@ class Nodes {
       for (int i = 0; i < N; ++i) mean[at(i)] += x.w * h_[j] * x.p[at(i)];
     }
     for (size_t j = 0; j < list_.size(); ++j)
-      for (int i = 0; i < N; ++i)
-        variance[at(i)] += list_[j].w * list_[j].p[at(i)] * square(h_[j] - mean[at(i)]);
+      for (int i = 0; i < N; ++i) variance[at(i)] += list_[j].w * list_[j].p[at(i)] * square(h_[j] - mean[at(i)]);
     double sum = 0;
     for (int i = 0; i < N; ++i) sum += a[at(i)] * (variance[at(i)] + outside_[at(i)] * square(mean[at(i)]));
     return sum;
@@ -377,8 +376,8 @@ Densities fractions(Allocation rule, const Points& points, const IntegrandMoment
     case A::kBest:
     case A::kAuto:
       return withNodes(points, [&](auto& nodes) {
-        return minimiseOverSimplex(
-            n, [&](const Densities& f) { return nodes.balanceVariance(f) * meanCost(f, cost, n); });
+        return minimiseOverSimplex(n,
+                                   [&](const Densities& f) { return nodes.balanceVariance(f) * meanCost(f, cost, n); });
       });
     case A::kSecondOrder:
       if (n != 2) return equalFractions(n);

@@ -36,9 +36,7 @@ double normalFromStudent(double t, int freedom) {
 
 }  // namespace
 
-double zOf(double level) {
-  return boost::math::quantile(boost::math::complement(boost::math::normal(), 0.5 * level));
-}
+double zOf(double level) { return boost::math::quantile(boost::math::complement(boost::math::normal(), 0.5 * level)); }
 
 EstimatorReport measureEstimators(const Problem& problem, int samples, int trials, uint64_t seed) {
   const int n = problem.techniques();
@@ -98,15 +96,15 @@ EstimatorReport measureEstimators(const Problem& problem, int samples, int trial
       s.events = std::min(s.events, eventsOf(*run.strategy, exact, counts, samples, trials));
       s.events = std::min(s.events, hits);
     }
-    const bool enough =
-        s.events >= (given ? kEventsGiven : kEventsOwn) &&
-        (given || (trials >= kTrialsOwn && run.estimate.varianceError() < 0.15 * s.variance));
+    const bool enough = s.events >= (given ? kEventsGiven : kEventsOwn) &&
+                        (given || (trials >= kTrialsOwn && run.estimate.varianceError() < 0.15 * s.variance));
     // the larger of the two standard errors: rare events make the measured one too small more often than too large
     double error = run.estimate.error();
     if (run.predictedVariance) error = std::max(error, std::sqrt(*run.predictedVariance / trials));
     error += 1e-10 * mu;  // what quadrature and rounding leave
     s.z = enough && !s.biased ? (run.estimate.mean() - mu) / error : std::nan("");
-    if (!run.predictedVariance && s.measurable()) s.z = std::copysign(normalFromStudent(std::abs(s.z), trials - 1), s.z);
+    if (!run.predictedVariance && s.measurable())
+      s.z = std::copysign(normalFromStudent(std::abs(s.z), trials - 1), s.z);
     if (!std::isfinite(run.estimate.mean())) s.z = std::numeric_limits<double>::infinity();
     report.strategies.push_back(s);
   }

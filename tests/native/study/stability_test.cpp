@@ -233,7 +233,8 @@ TEST(Stability, WhatCannotBeSeenIsNotJudged) {
 
 // Two trials of a strategy whose variance is not predicted: with this seed their mean lay 59 of their own errors off.
 TEST(Stability, TwoTrialsSayNothingOfTheirOwnScatter) {
-  const std::unique_ptr<Problem> problem = makeProblem(cell(StabilityAxis::kSamples, StudyBrdf::kWardDur, 0.1, 60).input);
+  const std::unique_ptr<Problem> problem =
+      makeProblem(cell(StabilityAxis::kSamples, StudyBrdf::kWardDur, 0.1, 60).input);
   for (uint64_t seed = 0; seed < 8; ++seed)
     for (const StrategyReport& s : measureEstimators(*problem, 65536, 2, seed).strategies) {
       EXPECT_FALSE(s.measurable() && s.strategy->knowledge != Knowledge::kGiven) << s.strategy->name;
