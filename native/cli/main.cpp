@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "cli/verbs.h"
@@ -67,7 +69,13 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
     for (const auto& [sub, run] : verbs)
-      if (sub->parsed()) return run();
+      if (sub->parsed()) {
+        const int code = run();
+        if (std::fflush(stdout) != 0 && errno != EPIPE)  // a reader that has gone wants no more
+          throw wardmis::Error(ExitCode::kFile, fmt::format("standard output: {}", std::strerror(errno)),
+                               "what was printed is not whole");
+        return code;
+      }
     return static_cast<int>(ExitCode::kUsage);
   } catch (const CLI::Success& e) {  // --help, --version
     return app.exit(e);

@@ -178,6 +178,23 @@ class Image(CommandTest):
         self.render("--spp", "1", "--resolution", "33x70")
         self.assertEqual(combined(self.out).shape, (70, 33, 4))
 
+    def test_output_that_is_full(self):
+        """What is lost on its way out is no success."""
+        self.render("--spp", "1")
+        for words in (
+            ("info", self.scene()),
+            ("info", "--json", self.scene()),
+            ("compare", self.out, self.out),
+            ("study", "--trials", 0),
+            ("study", "--trials", 0, "--json"),
+        ):
+            with self.subTest(words=words), open("/dev/full", "w") as full:
+                done = subprocess.run(
+                    [BINARY, *map(str, words)], stdout=full, stderr=subprocess.PIPE, text=True, timeout=60
+                )
+                self.assertEqual(done.returncode, 4, done.stderr)
+                self.assertRegex(done.stderr, r"\Awardmis: error: [^\n]*No space left on device[^\n]*\n\Z")
+
     def test_statistics(self):
         file = self.folder / "stats.json"
         self.render("--spp", "8", "--threads", "2", "--seed", "7", "--stats", file)
