@@ -99,7 +99,9 @@ class Stiff(CommandTest):
                 out=out,
             )
             counts = json.loads(stats.read_text())["counts"]
-            self.assertEqual([counts[key] for key in ("nan", "infinite", "negative")], [0, 0, 0], "samples were dropped")
+            self.assertEqual(
+                [counts[key] for key in ("nan", "infinite", "negative")], [0, 0, 0], "samples were dropped"
+            )
             return combined(out)[..., :3].astype(float) @ LUMINANCE
 
         return np.stack(list(self.pool.map(image, range(first_seed, first_seed + SEEDS))))
