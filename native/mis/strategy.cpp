@@ -456,23 +456,31 @@ Contributions contributions(Weights rule, const Densities& a, const Points& poin
     const double q = mixture(a, x.p, n);
     return q > 0 ? a[at(i)] * ((x.f - mixture(tau, x.p, n)) / q) : 0;
   };
+  // One walk over the points, which are large; the second is over y_i and w p_i alone.
+  struct Term {
+    double y, wp;
+  };
+  const size_t size = points.list.size();
+  std::vector<Term> terms(size * at(n));
   Contributions c;
-  std::vector<double> values(points.list.size());
+  for (size_t k = 0; k < size; ++k) {
+    const Point& x = points.list[k];
+    for (int i = 0; i < n; ++i) {
+      const double p = x.p[at(i)], value = a[at(i)] > 0 && p > 0 ? y(i, x) : 0;
+      terms[at(i) * size + k] = {value, x.w * p};
+      c.mean[at(i)] += x.w * (value * p);
+    }
+  }
   for (int i = 0; i < n; ++i) {
     if (!(a[at(i)] > 0)) continue;
     const double outside = points.outside[at(i)], there = rule == W::kOptimal ? -tau[at(i)] : 0;
-    double mean = outside * there;
-    for (size_t k = 0; k < values.size(); ++k) {
-      const Point& x = points.list[k];
-      values[k] = x.p[at(i)] > 0 ? y(i, x) : 0;
-      mean += x.w * (values[k] * x.p[at(i)]);
-    }
+    const double mean = c.mean[at(i)] += outside * there;
     double variance = outside * square(there - mean), fourth = variance * square(there - mean);
-    for (size_t k = 0; k < values.size(); ++k) {
-      const double d2 = square(values[k] - mean), weighted = points.list[k].w * (d2 * points.list[k].p[at(i)]);
+    for (const Term* t = &terms[at(i) * size]; t != &terms[at(i) * size] + size; ++t) {
+      const double d2 = square(t->y - mean), weighted = t->wp * d2;
       variance += weighted, fourth += weighted * d2;
     }
-    c.mean[at(i)] = mean, c.variance[at(i)] = variance, c.fourth[at(i)] = fourth;
+    c.variance[at(i)] = variance, c.fourth[at(i)] = fourth;
   }
   return c;
 }

@@ -43,7 +43,7 @@ EstimatorReport measureEstimators(const Problem& problem, int samples, int trial
   std::vector<const Strategy*> list;
   for (const Strategy& s : strategies())
     if (s.allocation != Allocation::kSecondOrder || n == 2) list.push_back(&s);
-  constexpr size_t kEffort = 40;  // the trials see six digits less than the quadrature
+  constexpr size_t kEffort = 20;  // the trials see six digits less than the quadrature
   const Exact exact = solve(problem, kEffort);
   TrialSettings settings;
   settings.samples = samples, settings.trials = trials, settings.seed = seed;
