@@ -227,12 +227,10 @@ def shadow_terminator_owner(obj: Any) -> Any:
 LINEAR_SPACE = "Linear Rec.709" if VERSION >= (4, 0, 0) else "Linear"
 
 
-def progress_bar(layout: Any, fraction: float, text: str) -> None:
-    """A bar from 4.0 on; before, the text has to say it all."""
+def progress_bar(layout: Any, fraction: float) -> None:
+    """From 4.0 on; before, the text beside it has to say it all."""
     if hasattr(layout, "progress"):
-        layout.progress(factor=fraction, text=text)
-    else:
-        layout.label(text=text, icon="TIME")
+        layout.progress(factor=fraction)
 
 
 def uniform_colour_shader() -> Any:

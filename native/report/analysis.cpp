@@ -228,6 +228,7 @@ class Reporter {
          {"baseline", base_->configuration->name},
          {"metric", metric_->name},
          {"clock", clock_ == &Clocks::cpu ? "cpu" : "wall"},
+         {"wall_scattered", scattered_},
          {"seeds", json::array()},
          {"checkpoints", e_.checkpoints},
          {"width", e_.width},
@@ -260,9 +261,9 @@ class Reporter {
     // a machine that others use as well: the clock of the processor then says more
     const bool cpuKnown = std::all_of(measured_.begin(), measured_.end(),
                                       [](const Measured& m) { return m.runs->front().checkpoints.back().cpuKnown; });
-    const bool scattered = std::any_of(measured_.begin(), measured_.end(),
-                                       [](const Measured& m) { return wallSpread(m) > kScatteredWall; });
-    clock_ = scattered && cpuKnown ? &Clocks::cpu : &Clocks::wall;
+    scattered_ = std::any_of(measured_.begin(), measured_.end(),
+                             [](const Measured& m) { return wallSpread(m) > kScatteredWall; });
+    clock_ = scattered_ && cpuKnown ? &Clocks::cpu : &Clocks::wall;
     double target = 0, time = 1e300;
     for (const Measured& m : measured_) {
       for (const Run& run : *m.runs) time = std::min(time, run.checkpoints.back().time.*clock_);  // within every curve
@@ -921,6 +922,7 @@ class Reporter {
   const Measured* base_ = nullptr;
   const MetricInfo* metric_ = nullptr;
   double Clocks::*clock_ = &Clocks::wall;
+  bool scattered_ = false;  // wall times of equal runs lie too far apart to be trusted
   size_t commonSeeds_ = 0;
   double target_ = 0, time_ = 0;
   std::vector<Group> groups_;

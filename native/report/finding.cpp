@@ -143,9 +143,11 @@ std::vector<std::string> finding(const json& r) {
     for (const json& m : r["models"]) said.push_back(m["text"]);
   if (seeds < 16)
     said.push_back(fmt::format("There are only {} seeds; 16 or more make the intervals trustworthy.", seeds));
-  if (r["clock"] == "cpu")
-    said.push_back(
-        "Wall times of equal runs scattered by more than 15 % on this machine, so that times are the processor's.");
+  if (r["wall_scattered"])
+    said.push_back(std::string("Wall times of equal runs scattered by more than 15 % on this machine, ") +
+                   (r["clock"] == "cpu" ? "so that times are the processor's."
+                                        : "and not every renderer here tells its processor time: times and their "
+                                          "ratios are rough, errors at equal samples are not touched by it."));
   if (r["complete"] == false) said.push_back("The study was stopped early; this is what was measured until then.");
   return said;
 }

@@ -410,6 +410,17 @@ class Converge(CommandTest):
         self.assertEqual(other["bias"]["verdict"], "none found")
         self.assertIs(report["models"][0]["agree"], True, report["models"])
 
+    def test_scattered_times_of_one_that_tells_no_processor_time_are_said_to_be_rough(self):
+        path = self.manifest(seeds=3)
+        manifest = json.loads(path.read_text())
+        for run in manifest["runs"]:
+            del run["cpu"]
+            run["wall"] *= 2 if run["seed"] == 3 else 1
+        path.write_text(json.dumps(manifest))
+        _, report = self.quick("--external", path)
+        self.assertEqual((report["clock"], report["wall_scattered"]), ("wall", True))
+        self.assertRegex(" ".join(report["finding"]), r"scattered by more than 15 %.* not every renderer .* rough")
+
     def test_mistakes_of_a_manifest_are_named(self):
         path = self.manifest(seeds=2)
         right = json.loads(path.read_text())

@@ -58,7 +58,8 @@ def draw_choices(layout: Any, settings: Any) -> None:
 def draw_progress(layout: Any) -> None:
     current = job.current()
     if job.running() and current is not None:
-        compat.progress_bar(layout, current.fraction, current.text)
+        compat.progress_bar(layout, current.fraction)
+        draw_text(layout, current.text, "TIME")
         layout.operator(operators.WARDMIS_OT_compare_cancel.bl_idname, icon="CANCEL")
         return
     row = layout.row()
