@@ -9,7 +9,9 @@ namespace wardmis {
 
 enum Technique : uint8_t { kLobe = 0, kCosine = 1, kLight = 2 };  // p_1: Ward's lobe, p_2: cos/pi, p_3: emitters
 inline constexpr int kTechniques = 3;
-using TechniqueMask = uint8_t;  // bit i: technique i
+inline constexpr const char* kTechniqueNames[kTechniques] = {"lobe", "cosine", "light"};   // in what is written
+inline constexpr const char* kTechniqueLabels[kTechniques] = {"Lobe", "Cosine", "Light"};  // in the names of passes
+using TechniqueMask = uint8_t;                                                             // bit i: technique i
 using Fractions = std::array<float, kTechniques>;
 
 constexpr TechniqueMask maskOf(Technique t) { return static_cast<TechniqueMask>(1u << t); }

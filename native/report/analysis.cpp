@@ -5,13 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
-#include "film/exr.h"
-#include "math/error.h"
-#include "report/flip.h"
+#include "report/gallery.h"
+#include "report/measured.h"
 #include "report/provenance.h"
-#include "report/seeds.h"
+#include "report/resample.h"
 
 namespace wardmis {
 namespace {
@@ -20,138 +18,12 @@ using nlohmann::json;
 
 constexpr double kFloorFactor = 10;      // errors under so many times the reference's own are marked
 constexpr double kDiscoveryRate = 0.05;  // of the map of who wins
-constexpr size_t kWinBlock = 4;          // pixels: side of the blocks of the map of who wins
 constexpr double kScatteredWall = 1.15;  // largest over median wall time of a configuration's runs
 constexpr size_t kFewestTested = 5;      // seeds, for a test of bias that can be believed to find any
 constexpr double kTargetFactor = 1.1;    // the target over what the last errors may be
-constexpr size_t kGroupsShown = 12;      // of each kind, the largest
-constexpr size_t kSmallestGroup = 64;    // pixels
 
 json toJson(const Interval& i) { return {{"mean", i.value}, {"low", i.low}, {"high", i.high}}; }
 json toJson(const std::optional<Interval>& i) { return i ? toJson(*i) : json(); }
-
-// Pixels of the image that belong together.
-struct Group {
-  std::string kind, name;
-  std::vector<uint32_t> pixels;
-};
-
-std::vector<Group> groupsOf(const Experiment& e) {
-  std::map<std::string, std::vector<uint32_t>> objects, materials, stiffness;
-  constexpr std::pair<float, const char*> kClasses[] = {
-      {2, "a: 1 to 2"}, {10, "b: 2 to 10"}, {100, "c: 10 to 100"}, {1e4f, "d: 100 to 10⁴"}, {1e38f, "e: over 10⁴"}};
-  for (uint32_t i = 0; i < e.survey.pixels.size(); ++i) {
-    const SurveyPixel& p = e.survey.pixels[i];
-    if (p.material < 0) continue;
-    if (const std::string* name = e.built->geometry.placements[p.placement].name) objects[*name].push_back(i);
-    materials[e.scene->materials[static_cast<size_t>(p.material)].name].push_back(i);
-    if (p.stiffness > 0)
-      for (const auto& [limit, name] : kClasses)
-        if (p.stiffness < limit) {
-          stiffness[name].push_back(i);
-          break;
-        }
-  }
-  std::vector<Group> groups;
-  for (auto* kind : {&objects, &materials, &stiffness}) {
-    std::vector<Group> found;
-    for (auto& [name, pixels] : *kind)
-      if (pixels.size() >= kSmallestGroup)
-        found.push_back({kind == &objects     ? "object"
-                         : kind == &materials ? "material"
-                                              : "stiffness",
-                         kind == &stiffness ? name.substr(3) : name, std::move(pixels)});
-    if (found.size() < 2) continue;  // the whole image says it already
-    if (kind != &stiffness)
-      std::stable_sort(found.begin(), found.end(),
-                       [](const Group& a, const Group& b) { return a.pixels.size() > b.pixels.size(); });
-    if (found.size() > kGroupsShown) found.resize(kGroupsShown);
-    groups.insert(groups.end(), std::make_move_iterator(found.begin()), std::make_move_iterator(found.end()));
-  }
-  return groups;
-}
-
-// A group's pixels as an image of one row, and the reference's.
-RgbImage partOf(const RgbImage& image, const Group& g) {
-  RgbImage part{static_cast<int>(g.pixels.size()), 1, {}};
-  part.rgb.reserve(3 * g.pixels.size());
-  for (const uint32_t i : g.pixels) part.rgb.insert(part.rgb.end(), &image.rgb[3 * i], &image.rgb[3 * i] + 3);
-  return part;
-}
-Reference partOf(const Reference& reference, const Group& g) {
-  Reference part;
-  part.image = partOf(reference.image, g);
-  if (reference.known())
-    part.setVariance(partOf({reference.image.width, reference.image.height, reference.variance}, g).rgb);
-  return part;
-}
-
-// What is known of one configuration besides its runs' figures.
-struct Measured {
-  const Configuration* configuration = nullptr;
-  const std::vector<Run>* runs = nullptr;
-  const Reference* reference = nullptr;
-  SeedStatistics seeds;
-  std::vector<float> predicted;                           // per pixel: variance that the runs claim; empty: unknown
-  std::array<std::vector<float>, kTechniques> fractions;  // per pixel; empty where the technique is not there
-  RgbImage first;                                         // of the first seed
-  std::vector<std::vector<Metrics>> groups;               // of each group, of each seed; their floors are still in them
-  std::vector<uint8_t> wins;  // against the baseline, see Reporter::wins; empty: not compared
-
-  double cpu(size_t run) const {
-    const Checkpoint& last = (*runs)[run].checkpoints.back();
-    return last.cpuKnown ? last.time.cpu : last.time.wall;
-  }
-};
-
-// Largest over median wall time of the runs.
-double wallSpread(const Measured& m) {
-  std::vector<double> walls;
-  for (const Run& run : *m.runs) walls.push_back(run.checkpoints.back().time.wall);
-  std::sort(walls.begin(), walls.end());
-  return walls.back() / walls[walls.size() / 2];
-}
-
-Measured load(const Experiment& e, size_t k, const std::vector<Group>& groups) {
-  Measured m;
-  m.configuration = &e.configurations[k];
-  m.runs = &e.runs[k];
-  m.reference = &e.references[m.configuration->common ? 0 : m.configuration->reference];
-  if (m.runs->size() < 2)
-    throw Error(ExitCode::kCancelled,
-                fmt::format("'{}' has {} finished run{}; a report needs two", m.configuration->name, m.runs->size(),
-                            m.runs->size() == 1 ? "" : "s"),
-                "run the same command again: it goes on where this one ended");
-  std::vector<RgbImage> images;
-  const double n = double(m.runs->size());
-  for (const Run& run : *m.runs) {
-    if (m.configuration->external) {
-      images.push_back(readRgb(run.image));
-      continue;
-    }
-    const ExrImage exr = readExr(run.image);
-    images.push_back(rgbOf(exr, run.image));
-    const size_t pixels = images.back().pixels();
-    m.predicted.resize(pixels);
-    for (const char c : {'R', 'G', 'B'})
-      if (const auto* v = exr.channel(fmt::format("ViewLayer.Variance.{}", c)))
-        for (size_t i = 0; i < pixels; ++i) m.predicted[i] += (*v)[i] / static_cast<float>(3 * n);
-    constexpr const char* kNames[kTechniques] = {"Lobe", "Cosine", "Light"};
-    for (size_t t = 0; t < kTechniques; ++t)
-      if (const auto* v = exr.channel(fmt::format("ViewLayer.Allocation {}.X", kNames[t]))) {
-        m.fractions[t].resize(pixels);
-        for (size_t i = 0; i < pixels; ++i) m.fractions[t][i] += (*v)[i] / static_cast<float>(n);
-      }
-  }
-  for (const Group& g : groups) {
-    const RgbImage reference = partOf(m.reference->image, g);
-    std::vector<Metrics>& each = m.groups.emplace_back();
-    for (const RgbImage& image : images) each.push_back(compareImages(partOf(image, g), reference));
-  }
-  m.seeds = seedStatistics(images, m.reference->image, m.reference->variance);
-  m.first = std::move(images[0]);
-  return m;
-}
 
 // The reference's own share of an error; 0 where it is unknown or cannot be told.
 double floorOf(const Reference& r, const MetricInfo& metric) {
@@ -206,7 +78,7 @@ class Reporter {
  public:
   Reporter(const Experiment& e, const std::function<void(double)>& told) : e_(e), groups_(groupsOf(e)) {
     for (size_t k = 0; k < e.configurations.size(); ++k) {
-      measured_.push_back(load(e, k, groups_));
+      measured_.push_back(measure(e, k, groups_));
       if (told) told(0.7 * double(k + 1) / double(e.configurations.size()));
     }
     base_ = &measured_[e.baseline];
@@ -243,8 +115,8 @@ class Reporter {
     if (json t = techniques(); !t.empty()) r["techniques"] = std::move(t);
     if (json m = models(); !m.empty()) r["models"] = std::move(m);
     r["finding"] = finding(r);
-    pictures(a.pictures, r["configurations"]);
-    images(a.images);
+    a.pictures = gallery(e_, measured_, r["configurations"]);
+    a.images = imageFiles(e_, measured_);
     r["images"] = json::array();
     for (const Picture& p : a.pictures) r["images"].push_back(p.description);
     return a;
@@ -548,7 +420,6 @@ class Reporter {
 
   json allocationOf(const Measured& m) const {
     if (m.configuration->external) return {};
-    constexpr const char* kNames[kTechniques] = {"lobe", "cosine", "light"};
     json j = json::object();
     const RenderSettings& s = m.configuration->settings;
     const size_t pixels = m.predicted.size();
@@ -580,7 +451,7 @@ class Reporter {
     }
     if (sampled == 0) return {};
     for (size_t t = 0; t < kTechniques; ++t)
-      if (!m.fractions[t].empty()) j[kNames[t]] = mean[t] / double(sampled);
+      if (!m.fractions[t].empty()) j[kTechniqueNames[t]] = mean[t] / double(sampled);
     j["clamped"] = needsMoments(s.allocation) ? json(double(clamped) / double(pixels)) : json();
     j["starved"] = double(starved) / double(pixels);
     return j;
@@ -707,11 +578,10 @@ class Reporter {
   }
 
   json techniques() const {
-    constexpr const char* kNames[kTechniques] = {"lobe", "cosine", "light"};
     json all = json::array();
     for (size_t t = 0; t < kTechniques; ++t) {
       if ((e_.survey.techniques >> t & 1) == 0) continue;
-      all.push_back({{"name", kNames[t]},
+      all.push_back({{"name", kTechniqueNames[t]},
                      {"ns_per_sample", 1e9 * e_.sampleCost[t]},
                      {"second_moment", e_.survey.secondMoment[t]},
                      {"variance", e_.survey.variance[t]},
@@ -805,116 +675,6 @@ class Reporter {
               {"ended", e_.ended},
               {"command", e_.command}});
     return j;
-  }
-
-  // Per pixel, over the seeds.
-  static std::vector<float> rmsError(const Measured& m) {
-    std::vector<float> rms(m.seeds.errors[0].size());
-    for (const std::vector<float>& e : m.seeds.errors)
-      for (size_t i = 0; i < rms.size(); ++i) rms[i] += e[i] / static_cast<float>(m.seeds.errors.size());
-    for (float& v : rms) v = std::sqrt(v);
-    return rms;
-  }
-
-  void images(std::vector<std::pair<std::string, ExrImage>>& all) const {
-    for (const Measured& m : measured_) {
-      ExrImage mean{e_.width, e_.height, {}, {}};
-      for (size_t c = 0; c < 3; ++c) {
-        mean.channels.push_back({std::string(1, "RGB"[c]), std::vector<float>(m.seeds.mean.pixels())});
-        for (size_t i = 0; i < m.seeds.mean.pixels(); ++i) mean.channels[c].values[i] = m.seeds.mean.rgb[3 * i + c];
-      }
-      const std::string name = folderName(m.configuration->name);
-      all.emplace_back(name + ".exr", std::move(mean));
-      all.emplace_back(name + "-error.exr", ExrImage{e_.width, e_.height, {{"Y", rmsError(m)}}, {}});
-    }
-  }
-
-  // `configurations`: the report's, in the order of measured_.
-  void pictures(std::vector<Picture>& all, const json& configurations) const {
-    const int w = e_.width, h = e_.height;
-    all.push_back(radiancePicture(
-        {"reference", "reference", "image", "", fmt::format("The reference: {}.", base_->reference->estimates)},
-        base_->reference->image));
-    for (const Measured& m : measured_)
-      all.push_back(
-          radiancePicture({m.configuration->name, m.configuration->name, "image", m.configuration->name,
-                           fmt::format("One seed, {} samples per pixel.", m.runs->front().checkpoints.back().spp)},
-                          m.first));
-    for (const Measured& m : measured_)
-      if (m.configuration->external)
-        all.push_back(radiancePicture({m.configuration->name + "/reference", m.configuration->name + ", converged",
-                                       "image", m.configuration->name, "The converged image of the other renderer."},
-                                      e_.references[m.configuration->reference].image));
-    // one scale for all errors: from the values of the baseline
-    std::vector<std::vector<float>> errors;
-    for (const Measured& m : measured_) errors.push_back(rmsError(m));
-    std::vector<float> sorted = errors[e_.baseline];
-    std::sort(sorted.begin(), sorted.end());
-    const double top = std::max(1e-6, double(sorted[sorted.size() - 1 - sorted.size() / 200]));
-    const double high = std::ceil(std::log10(top) * 4) / 4, low = high - 2.5;
-    for (size_t k = 0; k < measured_.size(); ++k) {
-      const std::string& name = measured_[k].configuration->name;
-      all.push_back(scalarPicture({name + "/error", name + ", error", "error", name,
-                                   "Root mean square over the seeds of the relative error; the same scale for all."},
-                                  errors[k], w, h, low, high, true));
-    }
-    for (const Measured& m : measured_) {
-      if (m.configuration->external) continue;
-      std::vector<float> shares(3 * static_cast<size_t>(w) * static_cast<size_t>(h));
-      int present = 0;
-      for (size_t t = 0; t < kTechniques; ++t) {
-        present += m.fractions[t].empty() ? 0 : 1;
-        for (size_t i = 0; i < m.fractions[t].size(); ++i) shares[3 * i + t] = m.fractions[t][i];
-      }
-      const std::string& name = m.configuration->name;
-      if (present > 1)
-        all.push_back(
-            sharesPicture({name + "/allocation", name + ", allocation", "allocation", name,
-                           "Shares of the samples at first hits: red the lobe, green the cosine, blue the light."},
-                          shares, w, h));
-    }
-    for (size_t k = 0; k < measured_.size(); ++k) {
-      const Measured& m = measured_[k];
-      if (m.wins.empty()) continue;
-      const Configuration& c = *m.configuration;
-      const std::string remark = configurations[k]["wins"]["text"];
-      all.push_back(classesPicture(
-          {c.name + "/wins", c.name + " or " + base_->configuration->name, "map", c.name,
-           fmt::format("Where relMSE × CPU time is less than with {}: blocks of {} × {} pixels, paired t-tests "
-                       "over the seeds, false discoveries at most 5 %.{}{}",
-                       base_->configuration->name, kWinBlock, kWinBlock, remark.empty() ? "" : " ", remark)},
-          m.wins, w, h,
-          {{c.name + " is better", "#0072B2"},
-           {base_->configuration->name + " is better", "#D55E00"},
-           {"undecided", "#999999"}}));
-    }
-    for (const Measured& m : measured_)
-      all.push_back(scalarPicture(
-          {m.configuration->name + "/bias", m.configuration->name + ", bias z", "map", m.configuration->name,
-           "z of the mean of the seeds against the reference, by blocks; beyond ±6 or so is bias."},
-          m.seeds.bias.z, w, h, -6, 6, false));
-    std::vector<float> stiffness(e_.survey.pixels.size());
-    float most = 0;
-    for (size_t i = 0; i < stiffness.size(); ++i)
-      stiffness[i] = e_.survey.pixels[i].stiffness > 0 ? e_.survey.pixels[i].stiffness : std::nanf(""),
-      most = std::max(most, e_.survey.pixels[i].stiffness);
-    if (most > 0)
-      all.push_back(scalarPicture({"stiffness", "stiffness", "map", "",
-                                   "Largest over smallest second moment of the techniques, at the first hit."},
-                                  stiffness, w, h, 0, std::max(1.0, std::ceil(std::log10(double(most)))), true));
-    for (const Measured& m : measured_)
-      if (m.configuration->external) {
-        const Reference &own = e_.references[0], &other = e_.references[m.configuration->reference];
-        std::vector<float> d(own.image.pixels());
-        for (size_t i = 0; i < d.size(); ++i)
-          for (size_t c = 0; c < 3; ++c)
-            d[i] += static_cast<float>((double(other.image.rgb[3 * i + c]) - double(own.image.rgb[3 * i + c])) /
-                                       (std::abs(double(own.image.rgb[3 * i + c])) + kMapeEpsilon) / 3);
-        all.push_back(scalarPicture(
-            {m.configuration->name + "/model", m.configuration->name + " − WardMIS", "map", m.configuration->name,
-             "Relative difference of the converged images: of the models, not an error."},
-            d, w, h, -1, 1, false));
-      }
   }
 
   const Experiment& e_;

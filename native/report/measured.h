@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the runs of a configuration left behind, read and compared with its reference.
+#pragma once
+
+#include "report/experiment.h"
+#include "report/seeds.h"
+
+namespace wardmis {
+
+inline constexpr size_t kWinBlock = 4;  // pixels: side of the blocks of the map of who wins
+
+// Pixels of the image that belong together.
+struct Group {
+  std::string kind, name;
+  std::vector<uint32_t> pixels;
+};
+
+// By object, by material and by class of stiffness, each where there are at least two; the largest ones.
+std::vector<Group> groupsOf(const Experiment& e);
+
+// A group's pixels as a reference of one row.
+Reference partOf(const Reference& reference, const Group& group);
+
+// What is known of one configuration besides its runs' figures.
+struct Measured {
+  const Configuration* configuration = nullptr;
+  const std::vector<Run>* runs = nullptr;
+  const Reference* reference = nullptr;
+  SeedStatistics seeds;
+  std::vector<float> predicted;                           // per pixel: variance that the runs claim; empty: unknown
+  std::array<std::vector<float>, kTechniques> fractions;  // per pixel; empty where the technique is not there
+  RgbImage first;                                         // of the first seed
+  std::vector<std::vector<Metrics>> groups;               // of each group, of each seed; their floors are still in them
+  std::vector<uint8_t> wins;  // against the baseline, 0 better, 1 worse, 2 undecided; empty: not compared
+
+  // Processor seconds of a run; wall seconds where the renderer does not tell them.
+  double cpu(size_t run) const {
+    const Checkpoint& last = (*runs)[run].checkpoints.back();
+    return last.cpuKnown ? last.time.cpu : last.time.wall;
+  }
+};
+
+// Of configuration k; `wins` is left empty. Throws Error(kCancelled) where it has fewer than two runs.
+Measured measure(const Experiment& e, size_t k, const std::vector<Group>& groups);
+
+// Largest over median wall time of the runs.
+double wallSpread(const Measured& m);
+
+}  // namespace wardmis
