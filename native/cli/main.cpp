@@ -67,6 +67,11 @@ int main(int argc, char** argv) {
   for (int i = 1; i + 1 < argc; ++i)
     json |= std::string_view(argv[i]) == "--progress" && std::string_view(argv[i + 1]) == "json";
   try {
+    for (int i = 1; i < argc; ++i)
+      if (argv[i][0] == '\0')  // which would be read as the number 0
+        throw wardmis::Error(ExitCode::kUsage,
+                             fmt::format("argument {} ({}) is empty", i, i > 1 ? argv[i - 1] : "the first"),
+                             "give a value, or leave the option out");
     app.parse(argc, argv);
     for (const auto& [sub, run] : verbs)
       if (sub->parsed()) {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -28,6 +29,8 @@ int run(Options& o) {
   o.settings.variants.clear();
   for (StudyBrdf b : {StudyBrdf::kWard, StudyBrdf::kWardDur, StudyBrdf::kWardGmd})
     if (std::find(o.variants.begin(), o.variants.end(), name(b)) != o.variants.end()) o.settings.variants.push_back(b);
+  if (o.settings.variants.size() < o.variants.size())
+    throw Error(ExitCode::kUsage, "--variants names one twice", "name each variant once");
   const StabilityReport report = runStability(stabilityGrid(o.settings), o.settings);
   if (!o.plot.empty()) plotStability(report, o.plot);
   if (o.json)

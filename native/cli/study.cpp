@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
+#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <chrono>
@@ -48,6 +49,8 @@ void refuseIdleOptions(const Options& o) {
     for (const char* option : roughness) refuse(option, "is no parameter of lafortune-phong", "its exponent is --m");
   else
     refuse("--m", "is no parameter of " + o.brdf, "its roughness is --alpha");
+  if (!o.given("--alpha-x"))
+    refuse("--phi-o", "means nothing of an isotropic lobe", "leave it out, or give --alpha-x and --alpha-y");
   if (o.mode == "planar") refuse("--phi-o", "means nothing in the planar reduction", "leave it out, or --mode full");
 }
 
@@ -127,6 +130,10 @@ int run(Options& o) {
   for (const std::string* path : {&o.csv, &o.plot})
     if (!path->empty()) checkWritable(*path);
   if (o.paper) return runPaper(o);
+  const tbb::global_control threads(
+      tbb::global_control::max_allowed_parallelism,
+      o.threads > 0 ? static_cast<size_t>(o.threads)
+                    : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
   const auto start = std::chrono::steady_clock::now();
   StudyInput& in = o.input;
   for (StudyBrdf b : {StudyBrdf::kLafortunePhong, StudyBrdf::kWard, StudyBrdf::kWardDur, StudyBrdf::kWardGmd})

@@ -486,7 +486,11 @@ Contributions contributions(Weights rule, const Densities& a, const Points& poin
 }
 
 double logVariance(Weights rule, const Densities& a, const Points& points, const IntegrandMoments& m) {
-  const int n = points.techniques;
+  return logVariance(rule, a, m, rule == W::kNonbalance ? Contributions{} : contributions(rule, a, points, m));
+}
+
+double logVariance(Weights rule, const Densities& a, const IntegrandMoments& m, const Contributions& c) {
+  const int n = m.techniques;
   Densities variance{}, logA{};
   for (int i = 0; i < n; ++i) logA[at(i)] = std::log(a[at(i)]);
   if (rule == W::kNonbalance) {
@@ -500,7 +504,7 @@ double logVariance(Weights rule, const Densities& a, const Points& points, const
     for (int i = 0; i < n; ++i)
       if (logA[at(i)] < kLeast && x[at(i)] - sum.log() < kLeast) logA[at(i)] = x[at(i)] - sum.log();
   } else {
-    variance = contributions(rule, a, points, m).variance;
+    variance = c.variance;
   }
   LogSum sum;
   for (int i = 0; i < n; ++i)

@@ -73,6 +73,7 @@ Contributions contributions(Weights, const Densities& a, const Points&, const In
 // ln(N Var) of the multi-sample estimator for real-valued fractions, and of the one-sample estimator with balance
 // weights.
 double logVariance(Weights, const Densities& a, const Points&, const IntegrandMoments&);
+double logVariance(Weights, const Densities& a, const IntegrandMoments&, const Contributions&);  // for the same a
 double logVarianceOneSample(const Densities& a, const Points&);
 
 // Whole counts: a_i N by largest remainder, at least one each (N >= techniques).

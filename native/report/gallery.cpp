@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace wardmis {
@@ -57,7 +58,7 @@ std::vector<Picture> gallery(const Experiment& e, const std::vector<Measured>& m
                                     e.references[m.configuration->reference].image));
   // one scale for all errors: from the values of the baseline
   std::vector<std::vector<float>> errors;
-  for (const Measured& m : measured) errors.push_back(rmsError(m));
+  std::transform(measured.begin(), measured.end(), std::back_inserter(errors), rmsError);
   std::vector<float> sorted = errors[e.baseline];
   std::sort(sorted.begin(), sorted.end());
   const double top = std::max(1e-6, double(sorted[sorted.size() - 1 - sorted.size() / 200]));

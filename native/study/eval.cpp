@@ -145,7 +145,10 @@ void evalLinesIn(const EvalSettings& settings, int in, int out) {
       wi = vector(numbers);
     }
     if (!isFinite(wi) || !isFinite(wo)) refuse("a direction beyond the range of the precision", "give unit vectors");
-    write(output, settings, wi, evaluate(s, wi, wo));
+    const Values<T> values = evaluate(s, wi, wo);
+    if (std::isnan(values.f) || std::isnan(values.pdf) || std::isnan(values.logPdf) || std::isnan(values.weight))
+      refuse("directions so long that the arithmetic overflows", "give unit vectors");
+    write(output, settings, wi, values);
   });
 }
 

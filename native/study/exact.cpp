@@ -2,6 +2,8 @@
 #include "study/exact.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_for_each.h>
 
 #include <cmath>
 #include <map>
@@ -183,13 +185,17 @@ Prediction predict(const Strategy& s, const Exact& e, const Densities* cost) {
 }
 
 std::vector<Prediction> predictAll(const std::vector<const Strategy*>& list, const Exact& e, const Densities* cost) {
-  std::vector<Prediction> all;
+  const auto goal = [](const Strategy* s) {
+    return s->allocation == Allocation::kAuto ? Allocation::kBest : s->allocation;
+  };
   std::map<Allocation, Densities> known;
-  for (const Strategy* s : list) {
-    const Allocation rule = s->allocation == Allocation::kAuto ? Allocation::kBest : s->allocation;  // the same goal
-    if (!known.contains(rule)) known[rule] = fractions(rule, e.points, e.moments, cost);
-    all.push_back({known[rule], logVariance(s->weights, known[rule], e.points, e.moments)});
-  }
+  for (const Strategy* s : list) known[goal(s)];
+  tbb::parallel_for_each(known, [&](auto& rule) { rule.second = fractions(rule.first, e.points, e.moments, cost); });
+  std::vector<Prediction> all(list.size());
+  tbb::parallel_for(size_t{0}, list.size(), [&](size_t i) {
+    const Densities& a = known.at(goal(list[i]));
+    all[i] = {a, logVariance(list[i]->weights, a, e.points, e.moments)};
+  });
   return all;
 }
 

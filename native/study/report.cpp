@@ -130,14 +130,26 @@ std::string studyTable(const Study& s) {
                                    big(run.exact.logVariance), (given ? "" : "~ ") + counts};
       if (settings.trials > 0) {
         const Derived d = derive(s, run);
-        row.insert(row.end(), {number(run.estimate.mean() + s.exact.diffusePart, 6), number(d.z, 2), number(d.variance),
-                               std::isfinite(d.low) ? fmt::format("{}..{}", number(d.low, 3), number(d.high, 3)) : "-",
-                               number(d.ratio), number(run.seconds * 1e6, 3), number(d.varianceCost, 3)});
+        row.insert(row.end(),
+                   {number(run.estimate.mean() + s.exact.diffusePart, 6), run.judgeable ? number(d.z, 2) : "?",
+                    number(d.variance),
+                    std::isfinite(d.low) ? fmt::format("{}..{}", number(d.low, 3), number(d.high, 3)) : "-",
+                    run.judgeable ? number(d.ratio) : "?", number(run.seconds * 1e6, 3), number(d.varianceCost, 3)});
       }
       rows.push_back(row);
     }
     out += aligned(rows);
   }
+  const auto any = [&](auto&& which) {
+    return std::any_of(s.runs.begin(), s.runs.end(),
+                       [&](const auto& runs) { return std::any_of(runs.begin(), runs.end(), which); });
+  };
+  if (any([](const StrategyRun& r) { return r.estimate.count() > 1 && !r.judgeable; }))
+    out +=
+        "\n?: says nothing. The trials are too few, or the variance rests on so rare events that they may have met "
+        "none; the mean\nis then too small and the measured variance far too small, without a bias.\n";
+  if (any([](const StrategyRun& r) { return r.estimate.count() > 1 && r.strategy->knowledge == Knowledge::kDirect; }))
+    out += "\n'optimal-direct' has a bias of O(1/N), as its source says.\n";
   out +=
       "\nN Var: exact, for real-valued fractions. Where counts follow the samples (~, those of the last pass), it is "
       "that of the\n"
@@ -174,6 +186,8 @@ json studyJson(const Study& s) {
           {"predicted_variance", r.predictedVariance ? finite(*r.predictedVariance) : json()},
           {"mean", settings.trials > 0 ? finite(r.estimate.mean()) : json()},
           {"bias_z", finite(d.z)},
+          {"events", finite(r.events)},
+          {"judgeable", r.judgeable},
           {"variance", finite(d.variance)},
           {"variance_95", {finite(d.low), finite(d.high)}},
           {"variance_error", settings.trials > 1 ? finite(r.estimate.varianceError()) : json()},

@@ -7,26 +7,11 @@
 #include <cmath>
 #include <limits>
 
-#include "mis/adaptive.h"
-
 namespace wardmis {
 
 namespace {
 
 size_t at(int i) { return static_cast<size_t>(i); }
-
-// 1/kurtosis of the mean over the trials, of independent samples with these counts.
-double eventsOf(const Strategy& s, const Exact& exact, const Densities& counts, int samples, int trials) {
-  const int n = exact.points.techniques;
-  Densities a{};
-  for (int i = 0; i < n; ++i) a[at(i)] = counts[at(i)] / samples;
-  const Contributions c = contributions(s.weights, a, exact.points, exact.moments);
-  // y_i of nonbalance weights and others alike: w_i f/p_i, of which 1/N_i sum y_i is taken
-  double variance = 0, fourth = 0;
-  for (int i = 0; i < n; ++i)
-    variance += c.variance[at(i)] / counts[at(i)], fourth += c.fourth[at(i)] / std::pow(counts[at(i)], 3);
-  return fourth > 0 ? trials * variance * variance / fourth : std::numeric_limits<double>::infinity();
-}
 
 // |z| that a normal variable exceeds as often as |t| is exceeded with so many degrees of freedom.
 double normalFromStudent(double t, int freedom) {
@@ -55,12 +40,6 @@ EstimatorReport measureEstimators(const Problem& problem, int samples, int trial
   report.techniques = n, report.logSecond = exact.moments.logSecond;
   const auto [low, high] = std::minmax_element(report.logSecond.begin(), report.logSecond.begin() + n);
   report.logStiffness = *high - *low;
-  // how often, in all trials with equal counts, the technique that does so most rarely meets the light
-  double hits = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < n; ++i) {
-    const double mean2 = exact.moments.mean[at(i)] * exact.moments.mean[at(i)];
-    hits = std::min(hits, double(trials) * samples / n * mean2 / (mean2 + exact.moments.variance[at(i)]));
-  }
   for (const StrategyRun& run : runTrials(problem, exact, list, settings)) {
     StrategyReport s;
     s.strategy = run.strategy;
@@ -83,26 +62,12 @@ EstimatorReport measureEstimators(const Problem& problem, int samples, int trial
                       1;
     s.biased = run.strategy->knowledge == Knowledge::kDirect;
     s.variance = run.estimate.variance();
-    const bool given = run.strategy->knowledge == Knowledge::kGiven;
-    Densities counts{};
-    if (given) {
-      for (int i = 0; i < n; ++i) counts[at(i)] = run.counts[at(i)];
-      s.events = eventsOf(*run.strategy, exact, counts, samples, trials);
-    } else {  // anywhere between equal counts and the goal
-      std::fill_n(counts.begin(), n, double(samples) / n);
-      s.events = eventsOf(*run.strategy, exact, counts, samples, trials);
-      counts = clampFractions(s.fractions, n, 0.02);
-      for (int i = 0; i < n; ++i) counts[at(i)] *= samples;
-      s.events = std::min(s.events, eventsOf(*run.strategy, exact, counts, samples, trials));
-      s.events = std::min(s.events, hits);
-    }
-    const bool enough = s.events >= (given ? kEventsGiven : kEventsOwn) &&
-                        (given || (trials >= kTrialsOwn && run.estimate.varianceError() < 0.15 * s.variance));
+    s.events = run.events;
     // the larger of the two standard errors: rare events make the measured one too small more often than too large
     double error = run.estimate.error();
     if (run.predictedVariance) error = std::max(error, std::sqrt(*run.predictedVariance / trials));
     error += 1e-10 * mu;  // what quadrature and rounding leave
-    s.z = enough && !s.biased ? (run.estimate.mean() - mu) / error : std::nan("");
+    s.z = run.judgeable && !s.biased ? (run.estimate.mean() - mu) / error : std::nan("");
     if (!run.predictedVariance && s.measurable())
       s.z = std::copysign(normalFromStudent(std::abs(s.z), trials - 1), s.z);
     if (!std::isfinite(run.estimate.mean())) s.z = std::numeric_limits<double>::infinity();

@@ -15,9 +15,7 @@ struct StrategyReport {
   // Of the mean, as a normal variable: where its error is the trials' own, that of Student's t at the same level. NaN
   // where it is not measurable.
   double z = 0;
-  // About how many events the trials' variance rests on (one over the mean's kurtosis): few where a technique meets
-  // what it is to find in one of thousands of trials. The mean then says nothing, and is not judged.
-  double events = 0;
+  double events = 0;  // see StrategyRun
   double variance = 0;
   bool biased = false;  // by O(1/N), as its source says: not judged
   bool measurable() const { return z == z; }
@@ -30,12 +28,6 @@ struct EstimatorReport {
   int techniques = 0;
   std::vector<StrategyReport> strategies;
 };
-
-// Means are judged where their variance rests on at least so many events: of strategies whose variance is predicted,
-// and of those that learn from their samples, of which every technique must also meet the light so often.
-inline constexpr double kEventsGiven = 100, kEventsOwn = 2000;
-// And of the latter on so many trials, whose scatter is all that says how sure their mean is.
-inline constexpr int kTrialsOwn = 100;
 
 double zOf(double level);  // |z| that a normal variable exceeds with that probability
 

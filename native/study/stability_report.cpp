@@ -146,9 +146,10 @@ std::string variantTable(const StabilityReport& report, StudyBrdf brdf) {
     if (r->estimators && r->estimators->logStiffness > stiffness) stiffness = r->estimators->logStiffness, stiffest = r;
   }
   for (int t = 0; t < 2; ++t)
-    out +=
-        fmt::format("in {}: {} values, {} underflowed and {} overflowed as they must; largest relative error {:.2g}\n",
-                    t == 0 ? "float" : "double", values[t], underflow[t], overflow[t], relative[t]);
+    out += fmt::format(
+        "in {}: {} values; {} underflowed, as e^-E or they themselves do, {} overflowed as they must; largest "
+        "relative error {:.2g}\n",
+        t == 0 ? "float" : "double", values[t], underflow[t], overflow[t], relative[t]);
   if (brdf != StudyBrdf::kWardGmd) out += fmt::format("albedo above 1, as this variant has it, in {} cells\n", above);
   if (stiffest != nullptr)
     out += fmt::format("stiffest: log10 of the second moments' ratio is {:.3g}, {}\n", stiffness / kLn10,
@@ -228,8 +229,13 @@ std::string stabilityTable(const StabilityReport& report) {
       out += "\n";
     }
   if (failed > 20) out += fmt::format("and {} more\n", failed - 20);
-  out += fmt::format("{}: {} of {} cells pass, seed {}, {:.1f} s\n", failed == 0 ? "PASS" : "FAIL",
-                     report.results.size() - failed, report.results.size(), report.seed, report.seconds);
+  size_t pairs = 0;
+  for (const StabilityResult& r : report.results) pairs += r.estimators ? r.estimators->strategies.size() : 0;
+  out += fmt::format(
+      "{}: {} of {} cells pass (the bias could be judged of {} of {} pairs of a strategy and a cell), seed {}, {:.1f} "
+      "s\n",
+      failed == 0 ? "PASS" : "FAIL", report.results.size() - failed, report.results.size(), report.biasTests, pairs,
+      report.seed, report.seconds);
   return out;
 }
 

@@ -18,6 +18,12 @@ struct TrialSettings {
   int threads = 0;                // 0: all
 };
 
+// Means are judged where their variance rests on at least so many events: of strategies whose variance is predicted,
+// and of those that learn from their samples, of which every technique must also meet the light so often.
+inline constexpr double kEventsGiven = 100, kEventsOwn = 2000;
+// And of the latter on so many trials, whose scatter is all that says how sure their mean is.
+inline constexpr int kTrialsOwn = 100;
+
 struct StrategyRun {
   const Strategy* strategy = nullptr;
   Prediction exact;                          // for real-valued fractions
@@ -25,6 +31,10 @@ struct StrategyRun {
   std::optional<double> predictedVariance;   // for these counts; none where counts follow the samples
   Estimate estimate;                         // of the integral (without the diffuse part), over the trials
   double seconds = 0;                        // of one trial: drawing by the given costs, and combining as measured
+  // About how many events the trials' variance rests on (one over the mean's kurtosis): few where a technique meets
+  // what it is to find in one of thousands of trials. The mean then says nothing, nor does the measured variance.
+  double events = 0;
+  bool judgeable = false;  // events and trials are enough to tell a bias from bad luck
 };
 
 // Nanoseconds that one sample of each technique takes, drawn and evaluated under all densities: median of several.

@@ -28,5 +28,6 @@ class Stability(CommandTest):
 
     def test_mistakes_end_with_2(self):
         self.refused(2, "stability", "--variants", "phong", says=["phong"])
+        self.refused(2, "stability", "--variants", "ward,ward", says=["twice"])
         self.refused(2, "stability", "--plot", self.folder / "maps.pdf", says=["SVG or PNG"])
         self.refused(2, "stability", "--seed", "-1", says=["--seed"])

@@ -56,6 +56,19 @@ class Study(CommandTest):
                         self.assertTrue(math.isclose(result["expect"]["NVar"][key], value, rel_tol=1e-6), key)
         self.assertGreater(len(seen), 10)
 
+    def test_events_so_rare_that_the_trials_met_none_are_no_bias(self):
+        """z of the strategies that learn is -15 here: their cosine samples meet the lobe once in thousands of trials."""
+        case = ("--mode", "planar", "--alpha", "1e-6", "--theta-o", "60", "--integrand", "joint", "--rho-d", "0.3",
+                "--samples", "256", "--trials", "400")  # fmt: skip
+        runs = self.study(*case)["measured"]["runs"][0]["strategies"]
+        self.assertLess(min(run["bias_z"] for run in runs.values()), -10)
+        self.assertTrue(all(abs(run["bias_z"]) < 4 for run in runs.values() if run["judgeable"]), runs)
+        self.assertTrue(runs["optimal"]["judgeable"])
+        table = self.run_command("study", *case).stdout
+        self.assertRegex(table, r"\nauto .* \?  ")
+        self.assertIn("?: says nothing", table)
+        self.assertNotIn("?", self.run_command("study").stdout)
+
     def test_planar_is_called_no_radiance(self):
         self.assertIn("no radiance", self.study("--trials", "0", "--mode", "planar")["note"])
         self.assertIn("no radiance", self.run_command("study", "--trials", "0", "--mode", "planar").stdout)
@@ -190,6 +203,8 @@ class Study(CommandTest):
         for arguments, says in (
             (("--theta-o", "90"), "89.9999"),
             (("--alpha", "0"), "alpha"),
+            (("--alpha", ""), "empty"),
+            (("--alpha", "0.1", "--phi-o", "30"), "--phi-o means nothing"),
             (("--alpha", "0.1", "--alpha-x", "0.2"), "--alpha"),
             (("--brdf", "phong"), "lafortune-phong"),
             (("--mode", "planar", "--alpha-x", "0.2", "--alpha-y", "0.1"), "planar"),
