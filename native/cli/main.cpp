@@ -6,6 +6,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "cli/options.h"
 #include "cli/verbs.h"
 #include "math/error.h"
 #include "scene/accel.h"
@@ -50,7 +51,10 @@ int main(int argc, char** argv) {
 
   const auto add = [&](const char* name, const char* what, wardmis::Verb (*options)(CLI::App&)) {
     CLI::App* sub = app.add_subcommand(name, what);
-    return std::pair{sub, options(*sub)};
+    wardmis::Verb run = options(*sub);
+    for (CLI::Option* option : sub->get_options())  // CLI11 reads nothing as the number 0
+      if (option->get_items_expected_max() > 0) option->check(wardmis::notEmpty());
+    return std::pair{sub, run};
   };
   const std::pair<CLI::App*, wardmis::Verb> verbs[] = {
       add("render", "render a scene to a multi-layer EXR", wardmis::addRender),
@@ -67,11 +71,6 @@ int main(int argc, char** argv) {
   for (int i = 1; i + 1 < argc; ++i)
     json |= std::string_view(argv[i]) == "--progress" && std::string_view(argv[i + 1]) == "json";
   try {
-    for (int i = 1; i < argc; ++i)
-      if (argv[i][0] == '\0')  // which would be read as the number 0
-        throw wardmis::Error(ExitCode::kUsage,
-                             fmt::format("argument {} ({}) is empty", i, i > 1 ? argv[i - 1] : "the first"),
-                             "give a value, or leave the option out");
     app.parse(argc, argv);
     for (const auto& [sub, run] : verbs)
       if (sub->parsed()) {

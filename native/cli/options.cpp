@@ -28,6 +28,13 @@ CLI::Validator wholeNumber() {
   return {check, ""};
 }
 
+CLI::Validator notEmpty() {
+  const auto check = [](const std::string& text) {
+    return text.empty() ? std::string("is empty; give a value, or leave the option out") : std::string();
+  };
+  return {check, ""};
+}
+
 CLI::Validator named(size_t longest) {
   const auto check = [=](const std::string& text) {
     if (text.empty()) return std::string("is empty; give a name");

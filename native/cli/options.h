@@ -13,6 +13,9 @@ CLI::Validator between(double low, double high);
 // A whole number of 64 bits without a sign, for --seed.
 CLI::Validator wholeNumber();
 
+// Anything but nothing, for every option that has a value.
+CLI::Validator notEmpty();
+
 // A name or path of at least one and at most `longest` bytes.
 CLI::Validator named(size_t longest = SIZE_MAX);
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <chrono>
@@ -12,6 +11,7 @@
 #include "cli/paths.h"
 #include "cli/verbs.h"
 #include "film/write_file.h"
+#include "integrate/setup.h"
 #include "math/error.h"
 #include "study/gnuplot.h"
 #include "study/paper.h"
@@ -130,10 +130,6 @@ int run(Options& o) {
   for (const std::string* path : {&o.csv, &o.plot})
     if (!path->empty()) checkWritable(*path);
   if (o.paper) return runPaper(o);
-  const tbb::global_control threads(
-      tbb::global_control::max_allowed_parallelism,
-      o.threads > 0 ? static_cast<size_t>(o.threads)
-                    : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
   const auto start = std::chrono::steady_clock::now();
   StudyInput& in = o.input;
   for (StudyBrdf b : {StudyBrdf::kLafortunePhong, StudyBrdf::kWard, StudyBrdf::kWardDur, StudyBrdf::kWardGmd})
@@ -156,11 +152,13 @@ int run(Options& o) {
   study.exact = solve(*problem);
   study.costNanoseconds = measureCost(*problem);
   const std::optional<Densities> cost = costs(o.cost, study.costNanoseconds, problem->techniques());
-  const std::vector<Prediction> predictions = predictAll(list, study.exact, cost ? &*cost : nullptr);
-  for (int n : counts) {
-    study.settings.push_back({n, o.trials, o.seed, cost, study.costNanoseconds, o.threads});
-    study.runs.push_back(runTrials(*problem, study.exact, list, study.settings.back(), &predictions));
-  }
+  withThreads(o.threads, [&] {
+    const std::vector<Prediction> predictions = predictAll(list, study.exact, cost ? &*cost : nullptr);
+    for (int n : counts) {
+      study.settings.push_back({n, o.trials, o.seed, cost, study.costNanoseconds, o.threads});
+      study.runs.push_back(runTrials(*problem, study.exact, list, study.settings.back(), &predictions));
+    }
+  });
   study.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!o.csv.empty()) writeFile(o.csv, studyCsv(study));
   if (!o.plot.empty()) plotStudy(study, o.plot);

@@ -68,12 +68,6 @@ class LogSum {
   double scale_ = -kInfinity, sum_ = 0;
 };
 
-Densities equalFractions(int n) {
-  Densities a{};
-  std::fill_n(a.begin(), n, 1.0 / n);
-  return a;
-}
-
 // Scales to sum 1, with no fraction under the least; false where that makes no sense.
 bool normalise(Densities& a, int n) {
   double sum = 0;
@@ -285,6 +279,12 @@ std::string_view name(Weights w) {
   return names[static_cast<int>(w)];
 }
 
+Densities equalFractions(int n) {
+  Densities a{};
+  std::fill_n(a.begin(), n, 1.0 / n);
+  return a;
+}
+
 std::span<const Strategy> strategies() { return kStrategies; }
 
 const Strategy* findStrategy(std::string_view name) {
@@ -476,8 +476,8 @@ Contributions contributions(Weights rule, const Densities& a, const Points& poin
     const double outside = points.outside[at(i)], there = rule == W::kOptimal ? -tau[at(i)] : 0;
     const double mean = c.mean[at(i)] += outside * there;
     double variance = outside * square(there - mean), fourth = variance * square(there - mean);
-    for (const Term* t = &terms[at(i) * size]; t != &terms[at(i) * size] + size; ++t) {
-      const double d2 = square(t->y - mean), weighted = t->wp * d2;
+    for (const Term& t : std::span(terms).subspan(at(i) * size, size)) {
+      const double d2 = square(t.y - mean), weighted = t.wp * d2;
       variance += weighted, fourth += weighted * d2;
     }
     c.variance[at(i)] = variance, c.fourth[at(i)] = fourth;

@@ -44,6 +44,8 @@ struct IntegrandMoments {
 };
 IntegrandMoments momentsOf(const Points& points);
 
+Densities equalFractions(int techniques);
+
 // Whether an allocation follows from these moments alone; of the equalised one, its first step from equal counts does.
 constexpr bool followsFromMoments(Allocation a) {
   return a != Allocation::kLinear && a != Allocation::kSecondOrder && a != Allocation::kBest && a != Allocation::kAuto;

@@ -5,24 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <limits>
 
 namespace wardmis {
-namespace {
 
 using nlohmann::json;
-
-// Root mean square of the relative error, per pixel, over the seeds.
-std::vector<float> rmsError(const Measured& m) {
-  std::vector<float> rms(m.seeds.errors[0].size());
-  for (const std::vector<float>& e : m.seeds.errors)
-    for (size_t i = 0; i < rms.size(); ++i) rms[i] += e[i] / static_cast<float>(m.seeds.errors.size());
-  for (float& v : rms) v = std::sqrt(v);
-  return rms;
-}
-
-}  // namespace
 
 std::vector<std::pair<std::string, ExrImage>> imageFiles(const Experiment& e, const std::vector<Measured>& measured) {
   std::vector<std::pair<std::string, ExrImage>> all;
@@ -34,7 +20,7 @@ std::vector<std::pair<std::string, ExrImage>> imageFiles(const Experiment& e, co
     }
     const std::string name = folderName(m.configuration->name);
     all.emplace_back(name + ".exr", std::move(mean));
-    all.emplace_back(name + "-error.exr", ExrImage{e.width, e.height, {{"Y", rmsError(m)}}, {}});
+    all.emplace_back(name + "-error.exr", ExrImage{e.width, e.height, {{"Y", m.rmsError}}, {}});
   }
   return all;
 }
@@ -57,17 +43,15 @@ std::vector<Picture> gallery(const Experiment& e, const std::vector<Measured>& m
                                      "image", m.configuration->name, "The converged image of the other renderer."},
                                     e.references[m.configuration->reference].image));
   // one scale for all errors: from the values of the baseline
-  std::vector<std::vector<float>> errors;
-  std::transform(measured.begin(), measured.end(), std::back_inserter(errors), rmsError);
-  std::vector<float> sorted = errors[e.baseline];
+  std::vector<float> sorted = base.rmsError;
   std::sort(sorted.begin(), sorted.end());
   const double top = std::max(1e-6, double(sorted[sorted.size() - 1 - sorted.size() / 200]));
   const double high = std::ceil(std::log10(top) * 4) / 4, low = high - 2.5;
-  for (size_t k = 0; k < measured.size(); ++k) {
-    const std::string& name = measured[k].configuration->name;
+  for (const Measured& m : measured) {
+    const std::string& name = m.configuration->name;
     all.push_back(scalarPicture({name + "/error", name + ", error", "error", name,
                                  "Root mean square over the seeds of the relative error; the same scale for all."},
-                                errors[k], w, h, low, high, true));
+                                m.rmsError, w, h, low, high, true));
   }
   for (const Measured& m : measured) {
     if (m.configuration->external) continue;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "film/exr.h"
@@ -21,6 +22,15 @@ RgbImage partOf(const RgbImage& image, const Group& g) {
   part.rgb.reserve(3 * g.pixels.size());
   for (const uint32_t i : g.pixels) part.rgb.insert(part.rgb.end(), &image.rgb[3 * i], &image.rgb[3 * i] + 3);
   return part;
+}
+
+// Per pixel, over the seeds.
+std::vector<float> rms(const std::vector<std::vector<float>>& squaredErrors) {
+  std::vector<float> values(squaredErrors[0].size());
+  for (const std::vector<float>& e : squaredErrors)
+    for (size_t i = 0; i < values.size(); ++i) values[i] += e[i] / static_cast<float>(squaredErrors.size());
+  for (float& v : values) v = std::sqrt(v);
+  return values;
 }
 
 }  // namespace
@@ -111,6 +121,7 @@ Measured measure(const Experiment& e, size_t k, const std::vector<Group>& groups
     for (const RgbImage& image : images) each.push_back(compareImages(partOf(image, g), reference));
   }
   m.seeds = seedStatistics(images, m.reference->image, m.reference->variance);
+  m.rmsError = rms(m.seeds.errors);
   m.first = std::move(images[0]);
   return m;
 }

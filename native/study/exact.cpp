@@ -25,12 +25,6 @@ double sum(const Densities& p, int n) {
   return s;
 }
 
-Densities equalShares(int n) {
-  Densities a{};
-  std::fill_n(a.begin(), n, 1.0 / n);
-  return a;
-}
-
 // f, g p_i, g^2 p_i, f^2/q and the products of densities under 1/q, q = equal mixture.
 Integrands moments(int n) {
   return {2 + 2 * n + n * n, [n](const Point& x, double* out) {
@@ -84,7 +78,7 @@ Integrands deviations(const Points& points, const IntegrandMoments& m) {
 // The heuristics that jump: their edges run through the cells, so that less must do.
 Integrands jumps(int n) {
   return {4 * n, [n](const Point& x, double* out) {
-            const Densities a = equalShares(n);
+            const Densities a = equalFractions(n);
             for (Weights rule : {Weights::kCutoff, Weights::kMaximum})
               for (int i = 0; i < n; ++i) {
                 const double y = weightedValue(rule, i, n, x.f, x.p, a, {});
@@ -135,14 +129,14 @@ Exact solve(const Problem& problem, size_t effort) {
     unsigned counted = 0;
     for (Weights rule : {Weights::kCutoff, Weights::kMaximum})
       for (int i = 0; i < n; ++i)
-        counted = 2 * counted + (weightedValue(rule, i, n, 1, x.p, equalShares(n), {}) > 0 ? 1 : 0);
+        counted = 2 * counted + (weightedValue(rule, i, n, 1, x.p, equalFractions(n), {}) > 0 ? 1 : 0);
     return counted;
   };
   const bool flat = problem.charts().front().dimensions == 1;
   const std::vector<double> jumpErrors =
       cubature.splitAtJumps(side, jumps(n), flat ? 1e-9 : 1e-8, std::min<size_t>(200, effort));
   measure();
-  const Densities equal = equalShares(n);
+  const Densities equal = equalFractions(n);
   const auto jumpError = [&](Weights rule, int first) {
     const Contributions c = contributions(rule, equal, e.points, e.moments);
     double sum = 0, error = 0;
@@ -185,7 +179,7 @@ Prediction predict(const Strategy& s, const Exact& e, const Densities* cost) {
 }
 
 std::vector<Prediction> predictAll(const std::vector<const Strategy*>& list, const Exact& e, const Densities* cost) {
-  const auto goal = [](const Strategy* s) {
+  const auto goal = [](const Strategy* s) {  // auto's is that of best
     return s->allocation == Allocation::kAuto ? Allocation::kBest : s->allocation;
   };
   std::map<Allocation, Densities> known;

@@ -144,11 +144,11 @@ std::string studyTable(const Study& s) {
     return std::any_of(s.runs.begin(), s.runs.end(),
                        [&](const auto& runs) { return std::any_of(runs.begin(), runs.end(), which); });
   };
-  if (any([](const StrategyRun& r) { return r.estimate.count() > 1 && !r.judgeable; }))
+  if (any([](const StrategyRun& r) { return r.estimate.count() > 0 && !r.judgeable; }))
     out +=
         "\n?: says nothing. The trials are too few, or the variance rests on so rare events that they may have met "
         "none; the mean\nis then too small and the measured variance far too small, without a bias.\n";
-  if (any([](const StrategyRun& r) { return r.estimate.count() > 1 && r.strategy->knowledge == Knowledge::kDirect; }))
+  if (any([](const StrategyRun& r) { return r.estimate.count() > 0 && r.strategy->knowledge == Knowledge::kDirect; }))
     out += "\n'optimal-direct' has a bias of O(1/N), as its source says.\n";
   out +=
       "\nN Var: exact, for real-valued fractions. Where counts follow the samples (~, those of the last pass), it is "

@@ -182,6 +182,37 @@ double fromPilot(const Trial& t, int samples, const Densities* cost, Counts& las
   return (balance(t, {}, pilot) * (n * each) + balance(t, pilot, last) * rest) / samples;
 }
 
+// About 1/kurtosis of the mean over the trials, of independent samples with these fractions.
+double eventsOf(const Contributions& c, const Densities& a, int techniques, int samples, int trials) {
+  double variance = 0, fourth = 0;
+  for (int i = 0; i < techniques; ++i) {  // y_i of nonbalance weights and others alike: w_i f/p_i, averaged over N_i
+    const double count = a[at(i)] * samples;
+    variance += c.variance[at(i)] / count, fourth += c.fourth[at(i)] / std::pow(count, 3);
+  }
+  return fourth > 0 ? trials * variance * variance / fourth : std::numeric_limits<double>::infinity();
+}
+
+// Of a strategy whose counts follow its samples, and lie anywhere between equal ones and those of its goal; nor more
+// than how often, in all trials with equal counts, the technique that does so most rarely meets the light.
+double eventsOfLearning(const Strategy& s, const Densities& goal, const Exact& exact, int samples, int trials) {
+  const int n = exact.points.techniques;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Densities& a : {equalFractions(n), clampFractions(goal, n, kLeastLearnt)})
+    least = std::min(least, eventsOf(contributions(s.weights, a, exact.points, exact.moments), a, n, samples, trials));
+  for (int i = 0; i < n; ++i) {
+    const double mean2 = exact.moments.mean[at(i)] * exact.moments.mean[at(i)];
+    least = std::min(least, double(trials) * samples / n * mean2 / (mean2 + exact.moments.variance[at(i)]));
+  }
+  return least;
+}
+
+// Whether a run's events and trials are enough to tell a bias from bad luck.
+bool judgeable(const StrategyRun& run, int trials) {
+  if (run.predictedVariance) return run.events >= kEventsGiven;
+  return run.events >= kEventsOwn && trials >= kTrialsOwn &&
+         run.estimate.varianceError() < 0.15 * run.estimate.variance();
+}
+
 }  // namespace
 
 Densities measureCost(const Problem& problem) {
@@ -203,37 +234,6 @@ Densities measureCost(const Problem& problem) {
   return cost;
 }
 
-namespace {
-
-// About 1/kurtosis of the mean over the trials, of independent samples with these counts.
-double eventsOf(const Contributions& c, const Densities& counts, int techniques, int trials) {
-  double variance = 0, fourth = 0;
-  for (int i = 0; i < techniques; ++i)  // y_i of nonbalance weights and others alike: w_i f/p_i, averaged over N_i
-    variance += c.variance[at(i)] / counts[at(i)], fourth += c.fourth[at(i)] / std::pow(counts[at(i)], 3);
-  return fourth > 0 ? trials * variance * variance / fourth : std::numeric_limits<double>::infinity();
-}
-
-// Of a strategy whose counts follow its samples, and lie anywhere between equal ones and those of its goal; nor more
-// than how often, in all trials with equal counts, the technique that does so most rarely meets the light.
-double eventsOfLearning(const Strategy& s, const Densities& goal, const Exact& exact, int samples, int trials) {
-  const int n = exact.points.techniques;
-  Densities equal{};
-  std::fill_n(equal.begin(), n, 1.0 / n);
-  double least = std::numeric_limits<double>::infinity();
-  for (const Densities& a : {equal, clampFractions(goal, n, kLeastLearnt)}) {
-    Densities counts{};
-    for (int i = 0; i < n; ++i) counts[at(i)] = a[at(i)] * samples;
-    least = std::min(least, eventsOf(contributions(s.weights, a, exact.points, exact.moments), counts, n, trials));
-  }
-  for (int i = 0; i < n; ++i) {
-    const double mean2 = exact.moments.mean[at(i)] * exact.moments.mean[at(i)];
-    least = std::min(least, double(trials) * samples / n * mean2 / (mean2 + exact.moments.variance[at(i)]));
-  }
-  return least;
-}
-
-}  // namespace
-
 std::vector<StrategyRun> runTrials(const Problem& problem, const Exact& exact,
                                    const std::vector<const Strategy*>& strategies, const TrialSettings& settings,
                                    const std::vector<Prediction>* predictions) {
@@ -254,12 +254,12 @@ std::vector<StrategyRun> runTrials(const Problem& problem, const Exact& exact,
     run.strategy = s;
     run.exact = predicted[runs.size()];
     run.counts = wholeCounts(run.exact.fractions, n, samples);
-    Densities actual{}, counts{};
-    for (int k = 0; k < n; ++k) counts[at(k)] = run.counts[at(k)], actual[at(k)] = counts[at(k)] / samples;
+    Densities actual{};
+    for (int k = 0; k < n; ++k) actual[at(k)] = double(run.counts[at(k)]) / samples;
     if (s->knowledge == Knowledge::kGiven) {
       const Contributions c = contributions(s->weights, actual, exact.points, exact.moments);
       run.predictedVariance = std::exp(logVariance(s->weights, actual, exact.moments, c)) / samples;
-      run.events = eventsOf(c, counts, n, settings.trials);
+      run.events = eventsOf(c, actual, n, samples, settings.trials);
     } else if (settings.trials > 0) {
       run.events = eventsOfLearning(*s, run.exact.fractions, exact, samples, settings.trials);
     }
@@ -327,10 +327,7 @@ std::vector<StrategyRun> runTrials(const Problem& problem, const Exact& exact,
   for (size_t s = 0; s < count; ++s) {
     for (size_t trial = 0; trial < trials; ++trial) runs[s].estimate.add(values[trial * count + s]);
     if (trials == 0) continue;
-    const Estimate& e = runs[s].estimate;
-    runs[s].judgeable = runs[s].predictedVariance ? runs[s].events >= kEventsGiven
-                                                  : runs[s].events >= kEventsOwn && settings.trials >= kTrialsOwn &&
-                                                        e.varianceError() < 0.15 * e.variance();
+    runs[s].judgeable = judgeable(runs[s], settings.trials);
     if (runs[s].strategy->knowledge != Knowledge::kGiven) runs[s].counts = last[s];
     // the median: a trial that another program interrupts must not count
     std::vector<double> combining(trials);
