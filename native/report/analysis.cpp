@@ -257,18 +257,27 @@ class Reporter {
     std::string text = fmt::format(
         "{} of {} blocks of {} × {} pixels differ from the reference (p < {:.2g}); the whole image: z = {:.2f}",
         b.failed, b.blocks, kBlock, kBlock, b.threshold, b.imageZ);
-    if (heavy) text += "; the tail is heavy, so that the whole image alone counts";
+    if (b.unmet > 0 || b.imageUnmet)
+      text += fmt::format(
+          "; {} not beyond what so few samples of the reference would be off: rare light that these seeds may not have "
+          "met (more of them would tell)",
+          b.unmet == 0          ? "the whole image is"
+          : b.unmet == b.failed ? (b.failed == 1 ? "that block is" : "those blocks are")
+                                : fmt::format("{} of those blocks {}", b.unmet, b.unmet == 1 ? "is" : "are"));
+    if (heavy && b.failed > b.unmet) text += "; the tail is heavy, so that the whole image alone counts";
     if (m.runs->size() < kFewestTested) text += "; too few seeds for a test that would find much";
     if (!known) text += "; the reference's own noise is not known and counts as bias";
     return {{"tested", true},
             {"blocks", b.blocks},
             {"block", kBlock},
             {"failed_blocks", b.failed},
+            {"unmet_blocks", b.unmet},
             {"smallest_p", b.smallestP},
             {"threshold", b.threshold},
             {"image_z", b.imageZ},
             {"verdict", m.seeds.biased()                 ? "biased"
                         : m.runs->size() < kFewestTested ? "not testable"
+                        : m.seeds.unclear()              ? "unclear"
                                                          : "none found"},
             {"text", text + "."}};
   }

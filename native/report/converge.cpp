@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <bit>
 #include <cerrno>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -305,8 +306,10 @@ class Study {
   void useWhatItSays(Reference& r) const {
     const ExrImage exr = readExr(r.path);
     json settings = json::object();
-    for (const auto& [name, text] : exr.attributes)
+    for (const auto& [name, text] : exr.attributes) {
       if (name == "wardmis:settings") settings = json::parse(text, nullptr, false);
+      if (name == "wardmis:samples_per_pixel") std::from_chars(text.data(), text.data() + text.size(), r.spp);
+    }
     const std::vector<uint64_t>& seeds = experiment_.seeds;
     if (settings.is_object() && settings.contains("seed") && settings["seed"].is_number_unsigned() &&
         std::find(seeds.begin(), seeds.end(), settings["seed"].get<uint64_t>()) != seeds.end())

@@ -35,7 +35,7 @@ std::vector<std::string> finding(const json& r) {
   const std::string base = r["baseline"];
   const std::string metric = r["metric"] == "relmse" ? "relMSE" : "relMSE without the largest 0.1 %";
   const char* key = r["metric"] == "relmse" ? "relmse" : "relmse_trimmed";
-  std::vector<std::string> slower, ties, unreached, biased, heavy;
+  std::vector<std::string> slower, ties, unreached, biased, unclear, heavy;
   std::vector<std::pair<double, std::string>> faster;  // by ratio
   double secondLow = 1;                                // lower end of the intervals of all but the best
   json best, baseline;
@@ -44,6 +44,7 @@ std::vector<std::string> finding(const json& r) {
   for (const json& c : r["configurations"]) {
     const std::string name = c["name"];
     if (c["bias"].is_object() && c["bias"]["verdict"] == "biased") biased.push_back(name);
+    if (c["bias"].is_object() && c["bias"]["verdict"] == "unclear") unclear.push_back(name);
     if (c["tail"]["heavy"] == true) heavy.push_back(name);
     const json& t = c["time_to_target"];
     target = number(t["target"]);
@@ -134,6 +135,11 @@ std::vector<std::string> finding(const json& r) {
     said.push_back(fmt::format(
         "The mean over the seeds differs from the reference for {}: its error does not vanish with more samples.",
         list(biased)));
+  if (!unclear.empty())
+    said.push_back(fmt::format(
+        "Parts of the image differ from the reference for {}, as rare light does that few seeds have met: whether it is "
+        "chance or bias, more seeds would tell.",
+        list(unclear)));
   if (!heavy.empty())
     said.push_back(
         fmt::format("Rare large samples carry much of the error of {}: the comparison therefore leaves out the largest "

@@ -50,21 +50,23 @@ void spreadOverPixels(BiasTest& test, const std::vector<double>& z, int width, i
           z[static_cast<size_t>(y / kBlock) * blocksAcross(width) + static_cast<size_t>(x / kBlock)]);
 }
 
-BiasTest testBias(const std::vector<RgbImage>& images, const RgbImage& reference,
-                  const std::vector<float>& knownVariance) {
+BiasTest testBias(const std::vector<RgbImage>& images, const Reference& reference, uint32_t spp) {
   const double n = double(images.size());
-  const int w = reference.width, h = reference.height;
-  const size_t pixels = reference.pixels();
+  const RgbImage& r = reference.image;
+  const int w = r.width, h = r.height;
+  const size_t pixels = r.pixels();
   const std::vector<double> truth = blockMeans(
-      w, h, [&](size_t i) { return grey(reference.rgb, i); }, false);
+      w, h, [&](size_t i) { return grey(r.rgb, i); }, false);
   std::vector<double> own(truth.size());
   double ownImage = 0;
-  if (!knownVariance.empty()) {
+  if (reference.known()) {
     own = blockMeans(
-        w, h, [&](size_t i) { return greyVariance(knownVariance, i); }, true);
-    for (size_t i = 0; i < pixels; ++i) ownImage += greyVariance(knownVariance, i);
+        w, h, [&](size_t i) { return greyVariance(reference.variance, i); }, true);
+    for (size_t i = 0; i < pixels; ++i) ownImage += greyVariance(reference.variance, i);
     ownImage /= double(pixels) * double(pixels);
   }
+  // of the mean of all seeds, if each of their samples varied as those of the reference do; 0 where nobody knows
+  const double samples = reference.spp > 0 ? double(reference.spp) / (double(spp) * n) : 0;
   std::vector<double> sum(truth.size()), squares(truth.size());
   double imageSum = 0, imageSquares = 0;
   for (const RgbImage& image : images) {
@@ -75,7 +77,7 @@ BiasTest testBias(const std::vector<RgbImage>& images, const RgbImage& reference
       sum[b] += d, squares[b] += d * d;
     }
     double d = 0;
-    for (size_t i = 0; i < pixels; ++i) d += grey(image.rgb, i) - grey(reference.rgb, i);
+    for (size_t i = 0; i < pixels; ++i) d += grey(image.rgb, i) - grey(r.rgb, i);
     d /= double(pixels);
     imageSum += d, imageSquares += d * d;
   }
@@ -83,6 +85,11 @@ BiasTest testBias(const std::vector<RgbImage>& images, const RgbImage& reference
   const auto tOf = [&](double s, double q, double extra, double value) {
     const double mean = s / n, variance = std::max(0.0, q / n - mean * mean) / (n - 1) + extra;
     return mean == 0 ? 0 : mean / std::sqrt(variance + square(kRounding * value));
+  };
+  // a difference that the seeds' own spread does not explain, and the reference's does
+  const auto isUnmet = [&](double s, double extra, double threshold) {
+    return samples > 0 && extra > 0 &&
+           pOfStudent(s / n / std::sqrt(extra * (1 + samples)), n - 1) >= threshold;
   };
   BiasTest test;
   std::vector<double> z(truth.size());
@@ -92,20 +99,23 @@ BiasTest testBias(const std::vector<RgbImage>& images, const RgbImage& reference
     z[b] = tOf(sum[b], squares[b], own[b], truth[b]);
     const double p = pOfStudent(z[b], n - 1);
     test.smallestP = std::min(test.smallestP, p);
-    test.failed += p < test.threshold ? 1 : 0;
+    if (p >= test.threshold) continue;
+    ++test.failed;
+    test.unmet += isUnmet(sum[b], own[b], test.threshold) ? 1 : 0;
   }
   double imageTruth = 0;
-  for (size_t i = 0; i < pixels; ++i) imageTruth += grey(reference.rgb, i) / double(pixels);
+  for (size_t i = 0; i < pixels; ++i) imageTruth += grey(r.rgb, i) / double(pixels);
   test.imageZ = tOf(imageSum, imageSquares, ownImage, imageTruth);
   test.imageP = pOfStudent(test.imageZ, n - 1);
+  test.imageUnmet = test.imageP < kBiasLevel && isUnmet(imageSum, ownImage, kBiasLevel);
   spreadOverPixels(test, z, w, h);
   return test;
 }
 
 }  // namespace
 
-SeedStatistics seedStatistics(const std::vector<RgbImage>& images, const RgbImage& reference,
-                              const std::vector<float>& knownVariance) {
+SeedStatistics seedStatistics(const std::vector<RgbImage>& images, const Reference& known, uint32_t spp) {
+  const RgbImage& reference = known.image;
   const size_t values = reference.rgb.size();
   const double n = double(images.size());
   SeedStatistics s;
@@ -153,7 +163,7 @@ SeedStatistics seedStatistics(const std::vector<RgbImage>& images, const RgbImag
   std::sort(seedErrors.begin(), seedErrors.end());
   if (const double median = seedErrors[seedErrors.size() / 2]; median > 0)
     s.tail.seedRatio = seedErrors.back() / median;
-  s.bias = testBias(images, reference, knownVariance);
+  s.bias = testBias(images, known, spp);
   return s;
 }
 

@@ -18,11 +18,16 @@ inline constexpr double kHeavySeeds = 3;     // largest over median error of a s
 
 // z-tests of the mean over seeds against the reference: blocks, each by Student's t over the seeds, Sidak over all of
 // them; and the image as a whole.
+// Seeds that have all missed a rare light agree with each other, and are sure of too dark a block. The reference has met
+// it, and its variance says how much so few samples could be off: a difference that is not beyond that tells nothing.
 struct BiasTest {
   size_t blocks = 0, failed = 0;
+  size_t unmet = 0;         // of the failed: not beyond what so few of the reference's samples would be off
+  bool imageUnmet = false;  // the same of the image as a whole
   double smallestP = 1, threshold = 0, imageZ = 0, imageP = 1;
   std::vector<float> z;  // per pixel: of its block
-  bool biased() const { return failed > 0 || imageP < kBiasLevel; }
+  bool imageBiased() const { return imageP < kBiasLevel && !imageUnmet; }
+  bool biased() const { return failed > unmet || imageBiased(); }
 };
 
 // How the squared error is spread. kurtosis: of a pixel's values over the seeds, pooled over pixels with the weight of
@@ -44,12 +49,13 @@ struct SeedStatistics {
   Tail tail;
 
   // Under a heavy tail a block that no large sample has met yet looks too dark and sure of it: the image alone counts.
-  bool biased() const { return tail.heavy() ? bias.imageP < kBiasLevel : bias.biased(); }
+  bool biased() const { return tail.heavy() ? bias.imageBiased() : bias.biased(); }
+  // Something differs, but it may be chance or bias.
+  bool unclear() const { return !biased() && (bias.failed > 0 || bias.imageP < kBiasLevel); }
 };
 
-// At least two images of the reference's size. knownVariance: of the reference, may be empty.
-SeedStatistics seedStatistics(const std::vector<RgbImage>& images, const RgbImage& reference,
-                              const std::vector<float>& knownVariance);
+// At least two images of the reference's size, of `spp` samples per pixel each. Throws as compareImages does.
+SeedStatistics seedStatistics(const std::vector<RgbImage>& images, const Reference& reference, uint32_t spp);
 
 // The same test between two converged images whose variances are known (normal, not Student's).
 BiasTest compareConverged(const Reference& a, const Reference& b);

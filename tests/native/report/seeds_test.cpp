@@ -37,6 +37,12 @@ std::vector<RgbImage> images(Noise noise, int samples, uint64_t seed, float shif
   return all;
 }
 
+Reference exact() {
+  Reference r;
+  r.image = truth();
+  return r;
+}
+
 double normalNoise(std::mt19937_64& random) { return std::normal_distribution<double>(0, 0.5)(random); }
 // once in 20000 a sample of 200: mean 0.01, taken off
 double rareNoise(std::mt19937_64& random) {
@@ -44,7 +50,7 @@ double rareNoise(std::mt19937_64& random) {
 }
 
 TEST(Seeds, AnHonestEstimatorIsLeftAlone) {
-  const SeedStatistics s = seedStatistics(images(normalNoise, 16, 1), truth(), {});
+  const SeedStatistics s = seedStatistics(images(normalNoise, 16, 1), exact(), 1);
   EXPECT_FALSE(s.biased()) << s.bias.smallestP;
   EXPECT_FALSE(s.tail.heavy()) << s.tail.kurtosis;
   EXPECT_NEAR(s.tail.kurtosis, 3, 0.1);
@@ -55,7 +61,7 @@ TEST(Seeds, AnHonestEstimatorIsLeftAlone) {
 
 TEST(Seeds, ABiasedOneIsCaught) {
   // 2 % of the light, in a strip of the image alone, well under the noise of any single pixel
-  const SeedStatistics s = seedStatistics(images(normalNoise, 64, 2, 0.03f, 16), truth(), {});
+  const SeedStatistics s = seedStatistics(images(normalNoise, 64, 2, 0.03f, 16), exact(), 1);
   EXPECT_TRUE(s.biased());
   EXPECT_GT(s.bias.failed, 0u);
   EXPECT_FALSE(s.tail.heavy()) << s.tail.kurtosis;
@@ -64,32 +70,62 @@ TEST(Seeds, ABiasedOneIsCaught) {
 }
 
 TEST(Seeds, AHeavyTailIsNoBias) {
-  const SeedStatistics s = seedStatistics(images(rareNoise, 16, 3), truth(), {});
+  const SeedStatistics s = seedStatistics(images(rareNoise, 16, 3), exact(), 1);
   EXPECT_TRUE(s.tail.heavy()) << s.tail.kurtosis;
   EXPECT_FALSE(s.biased()) << s.bias.failed << " blocks, image z " << s.bias.imageZ;
   // and with a bias on top it is both
-  const SeedStatistics both = seedStatistics(images(rareNoise, 16, 3, 0.05f, kWidth), truth(), {});
+  const SeedStatistics both = seedStatistics(images(rareNoise, 16, 3, 0.05f, kWidth), exact(), 1);
   EXPECT_TRUE(both.tail.heavy());
   EXPECT_TRUE(both.biased()) << both.bias.imageZ;
 }
 
 TEST(Seeds, TheReferencesOwnNoiseIsNoBias) {
-  RgbImage noisy = truth();
+  Reference noisy = exact();
   std::mt19937_64 random(4);
-  for (size_t i = 0; i < noisy.pixels(); ++i) {
+  for (size_t i = 0; i < noisy.image.pixels(); ++i) {
     const auto e = static_cast<float>(normalNoise(random) * 0.4);
-    for (size_t c = 0; c < 3; ++c) noisy.rgb[3 * i + c] += e;
+    for (size_t c = 0; c < 3; ++c) noisy.image.rgb[3 * i + c] += e;
   }
-  const std::vector<float> variance(noisy.rgb.size(), 0.04f);
   const std::vector<RgbImage> seeds = images(normalNoise, 64, 5);
-  EXPECT_FALSE(seedStatistics(seeds, noisy, variance).biased());
-  EXPECT_TRUE(seedStatistics(seeds, noisy, {}).biased()) << "taken for exact it is caught";
+  EXPECT_TRUE(seedStatistics(seeds, noisy, 1).biased()) << "taken for exact it is caught";
+  noisy.setVariance(std::vector<float>(noisy.image.rgb.size(), 0.04f));
+  EXPECT_FALSE(seedStatistics(seeds, noisy, 1).biased());
+}
+
+// A lamp that one block sees through a chink, one sample in 40 000 of a light of 4000: the reference has met it, and
+// no seed has.
+TEST(Seeds, RareLightThatNoSeedHasMetIsNotCalledBias) {
+  constexpr float kLight = 0.1f;
+  constexpr uint32_t kSpp = 16, kReferenceSpp = 1 << 16;
+  Reference reference = exact();
+  std::vector<float> variance(reference.image.rgb.size(), 0.25f / kReferenceSpp);
+  for (int y = 0; y < kBlock; ++y)
+    for (int x = 0; x < kBlock; ++x)
+      for (int c = 0; c < 3; ++c) {
+        const int i = 3 * (y * kWidth + x) + c;
+        reference.image.rgb[static_cast<size_t>(i)] += kLight;
+        variance[static_cast<size_t>(i)] = kLight * 4000 / kReferenceSpp;
+      }
+  reference.setVariance(variance);
+  reference.spp = kReferenceSpp;
+  const std::vector<RgbImage> seeds = images(normalNoise, kSpp, 8);
+  const SeedStatistics s = seedStatistics(seeds, reference, kSpp);
+  EXPECT_FALSE(s.tail.heavy()) << s.tail.kurtosis;
+  EXPECT_EQ(s.bias.failed, 1u) << "the seeds are sure of it";
+  EXPECT_EQ(s.bias.unmet, 1u);
+  EXPECT_FALSE(s.biased());
+  EXPECT_TRUE(s.unclear());
+  // of as many samples as the reference's they would have met it
+  EXPECT_TRUE(seedStatistics(seeds, reference, kReferenceSpp).biased());
+  // a light that does not scatter is not missed by chance
+  reference.setVariance(std::vector<float>(variance.size(), 0.25f / kReferenceSpp));
+  EXPECT_TRUE(seedStatistics(seeds, reference, kSpp).biased());
 }
 
 TEST(Seeds, FalseAlarmsAreAsRareAsStated) {
   // 200 images without bias at a level of 2 x 0.001: more than 3 alarms in fewer than 1e-3 of all test seeds
   int alarms = 0;
-  for (uint64_t k = 0; k < 200; ++k) alarms += seedStatistics(images(normalNoise, 1, 100 + k), truth(), {}).biased();
+  for (uint64_t k = 0; k < 200; ++k) alarms += seedStatistics(images(normalNoise, 1, 100 + k), exact(), 1).biased();
   EXPECT_LE(alarms, 3);
 }
 
@@ -109,10 +145,10 @@ TEST(Seeds, RoundingIsNoBias) {
   b.image = {16, 16, std::vector<float>(16 * 16 * 3, 0.0508761294f)};
   a.variance.assign(a.image.rgb.size(), 0.0f), b.variance = a.variance;
   EXPECT_FALSE(compareConverged(a, b).biased());
-  EXPECT_FALSE(seedStatistics(std::vector<RgbImage>(8, a.image), b.image, {}).biased());
+  EXPECT_FALSE(seedStatistics(std::vector<RgbImage>(8, a.image), b, 1).biased());
   for (float& v : b.image.rgb) v *= 1.0001f;
   EXPECT_TRUE(compareConverged(a, b).biased());
-  EXPECT_TRUE(seedStatistics(std::vector<RgbImage>(8, a.image), b.image, {}).biased());
+  EXPECT_TRUE(seedStatistics(std::vector<RgbImage>(8, a.image), b, 1).biased());
 }
 
 TEST(Seeds, SlopesAreJudged) {
