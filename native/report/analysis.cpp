@@ -27,7 +27,10 @@ json toJson(const std::optional<Interval>& i) { return i ? toJson(*i) : json(); 
 
 // The reference's own share of an error; 0 where it is unknown or cannot be told.
 double floorOf(const Reference& r, const MetricInfo& metric) {
-  return metric.value == &Metrics::mse ? r.mseFloor : metric.value == &Metrics::relMse ? r.relMseFloor : 0;
+  return metric.value == &Metrics::mse             ? r.mseFloor
+         : metric.value == &Metrics::relMse        ? r.relMseFloor
+         : metric.value == &Metrics::relMseTrimmed ? r.trimmedFloor
+                                                   : 0;
 }
 
 const MetricInfo& metricOf(double Metrics::*value) {
@@ -74,6 +77,12 @@ double roundUp(double x) {
   return std::ceil(x / unit - 1e-9) * unit;
 }
 
+// What times are taken to, and ratios are of.
+struct Goal {
+  const MetricInfo* metric = nullptr;
+  double target = 0;
+};
+
 class Reporter {
  public:
   Reporter(const Experiment& e, const std::function<void(double)>& told) : e_(e), groups_(groupsOf(e)) {
@@ -98,7 +107,7 @@ class Reporter {
          {"created", timestamp()},
          {"complete", e_.complete},
          {"baseline", base_->configuration->name},
-         {"metric", metric_->name},
+         {"metric", goal_.metric->name},
          {"clock", clock_ == &Clocks::cpu ? "cpu" : "wall"},
          {"wall_scattered", scattered_},
          {"seeds", json::array()},
@@ -123,36 +132,42 @@ class Reporter {
   }
 
  private:
-  // The metric and the clock that times and ratios refer to; an error that all surely reach, late on their curves, when
-  // the pilot is long over, and clear of the reference's noise; a time that all have.
+  // The metric and the clock that times and ratios refer to, and a time that all have.
   void choose() {
-    // under a heavy tail a few pixels of a few seeds decide the mean: the rest is asked without them
+    // under a heavy tail a few pixels of a few seeds decide the mean: the rest is asked without them, and with them too
     const bool heavy =
         std::any_of(measured_.begin(), measured_.end(), [](const Measured& m) { return m.seeds.tail.heavy(); });
-    metric_ = &metricOf(heavy ? &Metrics::relMseTrimmed : &Metrics::relMse);
     // a machine that others use as well: the clock of the processor then says more
     const bool cpuKnown = std::all_of(measured_.begin(), measured_.end(),
                                       [](const Measured& m) { return m.runs->front().checkpoints.back().cpuKnown; });
     scattered_ = std::any_of(measured_.begin(), measured_.end(),
                              [](const Measured& m) { return wallSpread(m) > kScatteredWall; });
     clock_ = scattered_ && cpuKnown ? &Clocks::cpu : &Clocks::wall;
-    double target = 0, time = 1e300;
+    time_ = 1e300;
+    for (const Measured& m : measured_)
+      for (const Run& run : *m.runs) time_ = std::min(time_, run.checkpoints.back().time.*clock_);  // within every curve
+    goal_ = goalOf(heavy ? &Metrics::relMseTrimmed : &Metrics::relMse);
+    if (heavy) allPixels_ = goalOf(&Metrics::relMse);
+  }
+
+  // An error that all surely reach, late on their curves, when the pilot is long over, and clear of the reference's
+  // noise.
+  Goal goalOf(double Metrics::*value) const {
+    const MetricInfo& metric = metricOf(value);
+    double target = 0;
     for (const Measured& m : measured_) {
-      for (const Run& run : *m.runs) time = std::min(time, run.checkpoints.back().time.*clock_);  // within every curve
       if (m.seeds.biased() && &m != base_) continue;  // it may have a limit of its own
-      const Curves curves = curvesOf(m);
+      const Curves curves(m, metric, clock_);
       const auto last = Bootstrap(curves.seeds()).interval([&](std::span<const uint32_t> draw) {
         return std::optional(curves.mean(draw, curves.checkpoints() - 1).error.back());
       });
-      target = std::max({target, last ? kTargetFactor * last->high : 0,
-                         kFloorFactor * (metric_->value == &Metrics::relMseTrimmed ? m.reference->trimmedFloor
-                                                                                   : floorOf(*m.reference, *metric_))});
+      target = std::max(
+          {target, last ? kTargetFactor * last->high : 0, kFloorFactor * floorOf(*m.reference, metric)});
     }
-    target_ = e_.target.value_or(target > 0 ? roundUp(target) : 1e-3);
-    time_ = time;
+    return {&metric, e_.target.value_or(target > 0 ? roundUp(target) : 1e-3)};
   }
 
-  Curves curvesOf(const Measured& m) const { return {m, *metric_, clock_}; }
+  Curves curvesOf(const Measured& m, const Goal& goal) const { return {m, *goal.metric, clock_}; }
 
   json metrics() const {
     json all = json::array();
@@ -210,8 +225,7 @@ class Reporter {
         const double floor = floorOf(r, metric);
         const Interval i = mean([&](const Run& run) { return run.checkpoints[k].error.*metric.value - floor; });
         j[metric.name] = toJson(i);
-        const double share = metric.value == &Metrics::relMseTrimmed ? r.trimmedFloor : floor;
-        near = near || (share > 0 && i.value < kFloorFactor * share);
+        near = near || (floor > 0 && i.value < kFloorFactor * floor);
       }
       if (k + 1 == m.runs->front().checkpoints.size() && m.runs->front().flip)
         j["flip"] = toJson(mean([](const Run& run) { return run.flip.value_or(0); }));
@@ -222,7 +236,7 @@ class Reporter {
   }
 
   json slopeOf(const Measured& m) const {
-    const Curves curves = curvesOf(m);
+    const Curves curves = curvesOf(m, goal_);
     const size_t n = curves.checkpoints();
     if (n < 3) return {};
     // once the pilot's samples are few among all; at least three points
@@ -292,15 +306,15 @@ class Reporter {
     });
   }
 
-  json timeToTarget(const Measured& m) const {
-    const auto time = [this](const Measured& x, std::span<const uint32_t> draw) {
-      return timeTo(curvesOf(x).mean(draw), target_);
+  json timeToTarget(const Measured& m, const Goal& goal) const {
+    const auto time = [&](const Measured& x, std::span<const uint32_t> draw) {
+      return timeTo(curvesOf(x, goal).mean(draw), goal.target);
     };
     const std::optional<Interval> seconds =
         Bootstrap(m.runs->size()).interval([&](std::span<const uint32_t> draw) { return time(m, draw); });
     const std::optional<Interval> ratio = ratioToBase(m, time);
     const bool isBase = &m == base_;
-    return {{"target", target_},
+    return {{"target", goal.target},
             {"seconds", toJson(seconds)},
             {"ratio", toJson(ratio)},
             {"verdict", isBase            ? (seconds ? "baseline" : "not reached")
@@ -310,18 +324,18 @@ class Reporter {
                                           : "tie"}};
   }
 
-  json equalTime(const Measured& m) const {
-    const auto error = [this](const Measured& x, std::span<const uint32_t> draw) {
-      return errorAt(curvesOf(x).mean(draw), time_);
+  json equalTime(const Measured& m, const Goal& goal) const {
+    const auto error = [&](const Measured& x, std::span<const uint32_t> draw) {
+      return errorAt(curvesOf(x, goal).mean(draw), time_);
     };
     const auto own = Bootstrap(m.runs->size()).interval([&](std::span<const uint32_t> draw) { return error(m, draw); });
     if (!own) return {};
     return {{"seconds", time_}, {"error", toJson(own)}, {"ratio", toJson(ratioToBase(m, error))}};
   }
 
-  json equalSamples(const Measured& m) const {
-    const auto error = [this](const Measured& x, std::span<const uint32_t> draw) {
-      const double e = curvesOf(x).mean(draw).error.back();
+  json equalSamples(const Measured& m, const Goal& goal) const {
+    const auto error = [&](const Measured& x, std::span<const uint32_t> draw) {
+      const double e = curvesOf(x, goal).mean(draw).error.back();
       return e > 0 ? std::optional(e) : std::nullopt;
     };
     const auto own = Bootstrap(m.runs->size()).interval([&](std::span<const uint32_t> draw) { return error(m, draw); });
@@ -332,15 +346,16 @@ class Reporter {
   }
 
   // A seed's share of the relative variance; of the error, where the metric leaves pixels out.
-  double spreadOf(const Measured& m, size_t run) const {
-    return metric_->value == &Metrics::relMse ? m.seeds.spread[run]
-                                              : (*m.runs)[run].checkpoints.back().error.*metric_->value;
+  static double spreadOf(const Measured& m, size_t run, const MetricInfo& metric) {
+    return metric.value == &Metrics::relMse
+               ? m.seeds.spread[run]
+               : (*m.runs)[run].checkpoints.back().error.*metric.value - floorOf(*m.reference, metric);
   }
 
-  json efficiency(const Measured& m) const {
-    const auto product = [this](const Measured& x, std::span<const uint32_t> draw) -> std::optional<double> {
+  json efficiency(const Measured& m, const Goal& goal) const {
+    const auto product = [&](const Measured& x, std::span<const uint32_t> draw) -> std::optional<double> {
       double variance = 0, cpu = 0;
-      for (const uint32_t i : draw) variance += spreadOf(x, i), cpu += x.cpu(i);
+      for (const uint32_t i : draw) variance += spreadOf(x, i, *goal.metric), cpu += x.cpu(i);
       const double n = double(draw.size());
       return variance / n * (cpu / n);
     };
@@ -348,7 +363,7 @@ class Reporter {
     const auto own = bootstrap.interval([&](std::span<const uint32_t> draw) { return product(m, draw); });
     const auto byRays = bootstrap.interval([&](std::span<const uint32_t> draw) -> std::optional<double> {
       double variance = 0, rays = 0;
-      for (const uint32_t i : draw) variance += spreadOf(m, i), rays += double((*m.runs)[i].checkpoints.back().rays);
+      for (const uint32_t i : draw) variance += spreadOf(m, i, *goal.metric), rays += double((*m.runs)[i].checkpoints.back().rays);
       const double n = double(draw.size());
       return rays > 0 ? std::optional(variance / n * (rays / n)) : std::nullopt;
     });
@@ -551,7 +566,7 @@ class Reporter {
       };
       wins = {{"better", share(0)}, {"worse", share(1)}, {"undecided", share(2)}};
     }
-    json toTarget = timeToTarget(m);
+    json toTarget = timeToTarget(m, goal_);
     if (!wins.is_null()) wins["text"] = mapRemark(c.name, base_->configuration->name, wins, toTarget);
     return {{"name", c.name},
             {"renderer", c.renderer},
@@ -561,6 +576,7 @@ class Reporter {
             {"left_out", c.leftOut},
             {"notes", c.notes},
             {"runs", m.runs->size()},
+            {"estimates", c.external ? json() : json(estimates(c.settings))},
             {"reference", m.reference->estimates},
             {"curve", curve(m)},
             {"pilot_seconds", c.external ? json() : json(pilot)},
@@ -573,9 +589,14 @@ class Reporter {
               {"kurtosis", m.seeds.tail.kurtosis},
               {"heavy", m.seeds.tail.heavy()}}},
             {"time_to_target", std::move(toTarget)},
-            {"equal_time", equalTime(m)},
-            {"equal_samples", equalSamples(m)},
-            {"efficiency", efficiency(m)},
+            {"equal_time", equalTime(m, goal_)},
+            {"equal_samples", equalSamples(m, goal_)},
+            {"efficiency", efficiency(m, goal_)},
+            {"all_pixels", allPixels_ ? json{{"time_to_target", timeToTarget(m, *allPixels_)},
+                                             {"equal_time", equalTime(m, *allPixels_)},
+                                             {"equal_samples", equalSamples(m, *allPixels_)},
+                                             {"efficiency", efficiency(m, *allPixels_)}}
+                                      : json()},
             {"cost", costOf(m)},
             {"prediction", prediction(m)},
             {"allocation", allocationOf(m)},
@@ -689,11 +710,12 @@ class Reporter {
   const Experiment& e_;
   std::vector<Measured> measured_;
   const Measured* base_ = nullptr;
-  const MetricInfo* metric_ = nullptr;
+  Goal goal_;
+  std::optional<Goal> allPixels_;  // where goal_ leaves some out
   double Clocks::*clock_ = &Clocks::wall;
   bool scattered_ = false;  // wall times of equal runs lie too far apart to be trusted
   size_t commonSeeds_ = 0;
-  double target_ = 0, time_ = 0;
+  double time_ = 0;
   std::vector<Group> groups_;
 };
 

@@ -83,12 +83,6 @@ class FolderLock {
   int folder_;
 };
 
-// Which light the images of these settings converge to.
-std::string estimates(const RenderSettings& s) {
-  return s.integrator == Integrator::kDirect || s.maxDepth == 1 ? "direct light"
-                                                                : fmt::format("paths, depth {}", s.maxDepth);
-}
-
 class Study {
  public:
   Study(const BuiltScene& built, const StudyPlan& plan, const StudyObserver& observer)

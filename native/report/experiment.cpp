@@ -13,6 +13,11 @@ namespace wardmis {
 
 using nlohmann::json;
 
+std::string estimates(const RenderSettings& s) {
+  return s.integrator == Integrator::kDirect || s.maxDepth == 1 ? "direct light"
+                                                                : fmt::format("paths, depth {}", s.maxDepth);
+}
+
 void Reference::setVariance(std::vector<float> v) {
   variance = std::move(v);
   mseFloor = relMseFloor = trimmedFloor = 0;

@@ -14,6 +14,9 @@
 
 namespace wardmis {
 
+// Which light the images of these settings converge to.
+std::string estimates(const RenderSettings& settings);
+
 // One way of rendering the scene.
 struct Configuration {
   std::string name, renderer = "WardMIS";
@@ -55,7 +58,7 @@ struct Reference {
   uint32_t spp = 0, chunks = 0;
   double seconds = 0;
   // Its variance's share of an error; 0 where unknown. Trimmed: without the largest 0.1 % of the shares, about what the
-  // trimmed relMSE has of it, which is no difference of expectations and is not subtracted.
+  // trimmed relMSE has of it, whose pixels may be others.
   double mseFloor = 0, relMseFloor = 0, trimmedFloor = 0;
 
   bool known() const { return !variance.empty(); }

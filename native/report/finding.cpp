@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "report/analysis.h"
 
@@ -26,6 +27,53 @@ std::string list(const std::vector<std::string>& parts) {
   std::string text;
   for (size_t i = 0; i < parts.size(); ++i) text += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
   return text;
+}
+
+// The comparison of a report whose metric leaves pixels out, with all of them.
+std::string withAllPixels(const json& r) {
+  const std::string base = r["baseline"];
+  std::vector<std::string> times, unsure, errors;
+  std::string target;
+  for (const json& c : r["configurations"]) {
+    const json& all = c["all_pixels"];
+    if (!all.is_object() || c["name"] == base) continue;
+    const std::string name = c["name"];
+    const json &t = all["time_to_target"], &e = all["equal_samples"];
+    target = number(t["target"]);
+    if (t["ratio"].is_object())
+      times.push_back(fmt::format("{} {}", name, interval(t["ratio"])));
+    else
+      unsure.push_back(name);
+    if (e.is_object() && e["ratio"].is_object()) errors.push_back(fmt::format("{} {}", name, interval(e["ratio"])));
+  }
+  std::string text;
+  if (!times.empty())
+    text = fmt::format("a relMSE of {} is reached in these shares of the time of {}: {}", target, base, list(times));
+  if (!unsure.empty())
+    text += fmt::format("{}it cannot be said when {} reach{} a relMSE of {}", text.empty() ? "" : "; ", list(unsure),
+                        unsure.size() == 1 ? "es" : "", target);
+  if (!errors.empty())
+    text += fmt::format("{}errors at equal samples are {} of that of {}", text.empty() ? "" : "; ", list(errors), base);
+  return text.empty() ? "" : fmt::format("With all pixels, {}.", text);
+}
+
+// What others estimate than the baseline is another task.
+std::vector<std::string> otherLight(const json& r) {
+  json base;
+  std::map<std::string, std::vector<std::string>> others;
+  for (const json& c : r["configurations"])
+    if (c["name"] == r["baseline"]) base = c;
+  for (const json& c : r["configurations"])
+    if (c["estimates"].is_string() && c["estimates"] != base["estimates"]) others[c["estimates"]].push_back(c["name"]);
+  std::vector<std::string> said;
+  for (const auto& [light, names] : others)
+    said.push_back(fmt::format(
+        "{} estimate{} {}, {} {}: these are images of different light, {}, and neither is better for being sooner.",
+        list(names), names.size() == 1 ? "s" : "", light, r["baseline"].get<std::string>(),
+        base["estimates"].get<std::string>(),
+        r["references"].size() > 1 ? "each held against its own reference"
+                                   : "although both are held against the one reference given"));
+  return said;
 }
 
 }  // namespace
@@ -131,6 +179,7 @@ std::vector<std::string> finding(const json& r) {
         fmt::format("By MAPE, which weighs the many small errors more, there is more error than of {} at equal samples "
                     "with {}; {} has {}.",
                     base, list(disagree), base, number(baseline["curve"].back()["mape"]["mean"])));
+  for (std::string& text : otherLight(r)) said.push_back(std::move(text));
   if (!biased.empty())
     said.push_back(fmt::format(
         "The mean over the seeds differs from the reference for {}: its error does not vanish with more samples.",
@@ -145,6 +194,7 @@ std::vector<std::string> finding(const json& r) {
         fmt::format("Rare large samples carry much of the error of {}: the comparison therefore leaves out the largest "
                     "0.1 % of the pixels of each image, and the curves show both.",
                     list(heavy)));
+  if (std::string text = withAllPixels(r); !text.empty()) said.push_back(std::move(text));
   if (r.contains("models"))
     for (const json& m : r["models"]) said.push_back(m["text"]);
   if (seeds < 16)

@@ -17,7 +17,7 @@ std::span<const MetricInfo> allMetrics() {
       MetricInfo{"relmse", "relMSE", "mean (x − r)² / (r² + ε)", kRelMseEpsilon, &Metrics::relMse, true},
       MetricInfo{"relmse_trimmed", "relMSE without the largest 0.1 %",
                  "mean (x − r)² / (r² + ε) without the pixels of the largest 0.1 %, at least one", kRelMseEpsilon,
-                 &Metrics::relMseTrimmed, false},
+                 &Metrics::relMseTrimmed, true},
       MetricInfo{"mape", "MAPE", "mean |x − r| / (|r| + ε)", kMapeEpsilon, &Metrics::mape, false},
       MetricInfo{"smape", "SMAPE", "mean 2 |x − r| / (|x| + |r| + ε)", kMapeEpsilon, &Metrics::smape, false},
   };

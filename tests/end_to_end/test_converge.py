@@ -285,6 +285,11 @@ class Converge(CommandTest):
         )  # fmt: skip
         self.assertEqual(len(report["references"]), 2)
         self.assertEqual(self.of(report, "direct")["reference"], "direct light")
+        said = " ".join(report["finding"])
+        self.assertRegex(
+            said, "direct estimates direct light, equal paths, depth 8: .* each held against its own reference"
+        )
+        self.assertNotRegex(said, "(strata|costly) estimate")
         self.assertEqual(self.of(report, "costly")["settings"]["cost"], [1, 1, 2])
         errors = [at["relmse"]["mean"] for at in self.of(report, "strata")["curve"]]
         self.assertEqual(errors, sorted(errors, reverse=True))
@@ -447,6 +452,41 @@ class Converge(CommandTest):
         self.assertIs(report["models"][0]["agree"], False)
         self.assertRegex(" ".join(report["finding"]), r"differs from the reference for Other")
 
+    def test_under_a_heavy_tail_the_figures_with_all_pixels_stand_beside_those_without(self):
+        path = self.manifest()
+        for n in (2, 4, 8):  # a firefly in one seed
+            image = path.parent / f"s3-{n}.exr"
+            values = oiio.ImageInput.open(str(image)).read_image(format="float")
+            values[20, 30] += 100 / n
+            write_rgb(image, values)
+        out, report = self.folder / "study", self.quick("--external", path, seeds=6)[1]
+        self.assertEqual(report["metric"], "relmse_trimmed")
+        floor = report["reference"]["floor"]
+        self.assertLess(floor["relmse_trimmed"], floor["relmse"])
+        last = {}
+        for name in ("equal", "second-moment"):
+            runs = [json.loads(p.read_text()) for p in sorted((out / "runs" / name).glob("*.json"))]
+            last[name] = {key: np.mean([r["checkpoints"][-1][key] for r in runs]) - floor[key] for key in floor}
+            c = self.of(report, name)
+            self.assertAlmostEqual(c["equal_samples"]["error"]["mean"], last[name]["relmse_trimmed"], places=12)
+            self.assertAlmostEqual(c["curve"][-1]["relmse_trimmed"]["mean"], last[name]["relmse_trimmed"], places=12)
+            self.assertAlmostEqual(c["all_pixels"]["equal_samples"]["error"]["mean"], last[name]["relmse"], places=12)
+        for found, key in ((c["equal_samples"], "relmse_trimmed"), (c["all_pixels"]["equal_samples"], "relmse")):
+            self.assertAlmostEqual(found["ratio"]["mean"], last["second-moment"][key] / last["equal"][key], places=9)
+        other = self.of(report, "Other")
+        self.assertGreater(
+            other["all_pixels"]["equal_samples"]["error"]["mean"], 2 * other["equal_samples"]["error"]["mean"]
+        )
+        self.assertRegex(
+            " ".join(report["finding"]), r"With all pixels, .*errors at equal samples are .*second-moment \d"
+        )
+        with open(out / "configurations.csv") as file:
+            rows = {row["configuration"]: row for row in csv.DictReader(file)}
+        self.assertEqual(
+            float(rows["second-moment"]["all_pixels_equal_samples_ratio"]),
+            c["all_pixels"]["equal_samples"]["ratio"]["mean"],
+        )
+
     def test_a_model_of_its_own_is_no_error(self):
         _, report = self.quick("--external", self.manifest(scale=1.1, common=False))
         other = self.of(report, "Other")
@@ -494,7 +534,8 @@ class Converge(CommandTest):
                 runs.setdefault(name, []).append(run)
         _, report = self.study(*options)
         self.assertEqual(report["clock"], "wall")
-        key, floor = report["metric"], (report["reference"]["floor"]["relmse"] if report["metric"] == "relmse" else 0)
+        key = report["metric"]
+        floor = report["reference"]["floor"][key]
         error = np.mean([[at[key] for at in run["checkpoints"]] for run in runs["equal"]], axis=0) - floor
         wall = 0.02 + 0.01 * np.array([1, 2, 4, 8, 16])
         target = self.of(report, "equal")["time_to_target"]["target"]
@@ -534,11 +575,9 @@ class Converge(CommandTest):
             np.sum([r["rays"] for r in runs["equal"]]) / np.sum([r["rays"][0] for r in runs["equal"]]),
             places=9,
         )
-        error = np.mean([run["checkpoints"][-1][key] for run in runs["equal"]])
+        error = np.mean([run["checkpoints"][-1][key] for run in runs["equal"]]) - floor
         efficiency = self.of(report, "equal")["efficiency"]["variance_x_seconds"]["mean"]
-        self.assertAlmostEqual(
-            efficiency / (error * run["checkpoints"][-1]["cpu"]), 1, delta=0.1
-        )  # the reference's share apart
+        self.assertAlmostEqual(efficiency / (error * run["checkpoints"][-1]["cpu"]), 1, delta=0.1)
         shares = self.of(report, "equal")["allocation"]
         self.assertAlmostEqual(shares["lobe"] + shares["cosine"] + shares["light"], 1, places=6)
         self.assertIsNone(shares["clamped"])

@@ -467,11 +467,20 @@
           of.map((c) => [namedBriefly(c), at[1](c[field], of[0][field]), interval(c[field].error), c === baseline ? "baseline" : ratio(c[field].ratio)])));
     };
     const apart = configurations.filter((c) => c.pilot_apart > 0).map((c) => ` The pilot of ${c.name}, ${integer(c.pilot_apart)} camera samples per pixel more, is not in its image; its time and rays count.`).join("");
+    // where the metric leaves pixels out, the same with all of them
+    const all = configurations.filter((c) => c.all_pixels);
+    const whole = all.length ? h("div", {}, h("h3", {}, "With all pixels"),
+      read(`The same by relMSE, of which the largest 0.1 % of the pixels are a part: the time to ${brief(all[0].all_pixels.time_to_target.target)}, and the errors at equal time and equal samples, as ratios to those of ${baseline.name}. The rare large samples make these intervals wide, and rough.`),
+      table("with all pixels", [["Configuration"], ["Seconds to target", "number"], ["Ratio of times", "number"], ["At equal time", "number"], ["At equal samples", "number"], ["Variance × CPU seconds, ratio", "number"]],
+        all.map((c) => {
+          const a = c.all_pixels, of = (part) => (c === baseline ? kNone : part ? ratio(part.ratio) : kNone);
+          return [named(c), a.time_to_target.seconds ? interval(a.time_to_target.seconds) : "not reached", of(a.time_to_target), of(a.equal_time), of(a.equal_samples), of(a.efficiency)];
+        }))) : null;
     const parts = [
       one("equal_time", (e) => `At ${number(e.seconds)} s`, `Errors read from the curves at the same ${clock} time, and their ratios to the baseline’s: under 1 is better.`, ["s", (e, first) => (e.seconds === first.seconds ? kNone : number(e.seconds))]),
       one("equal_samples", (e) => `At ${integer(e.spp)} samples per pixel`, `Errors at the same number of samples in the image, whatever they cost, and their ratios to the baseline’s.${apart}`, ["spp", (e, first) => (e.spp === first.spp ? kNone : integer(e.spp))]),
     ].filter(known);
-    return parts.length ? section("equal", "At equal time, and at equal samples", h("div", { class: parts.length > 1 ? "pair" : null }, parts)) : null;
+    return parts.length ? section("equal", "At equal time, and at equal samples", h("div", { class: parts.length > 1 ? "pair" : null }, parts), whole) : null;
   }
 
   // ---- 5. Images -----------------------------------------------------------------------------------------------------
