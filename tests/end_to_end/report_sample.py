@@ -328,6 +328,12 @@ def odd():
         crowd["configurations"].append(
             configuration("auto") | {"name": f"{'a-very-long-name-' * 3}{k}", "settings": {"nested": {"a": [1, None]}}}
         )
+    # five of ours, and a heavy tail: what leaves pixels out stands beside what does not
+    heavy, _ = full()
+    heavy["images"], heavy["metric"] = [], "relmse_trimmed"
+    heavy["configurations"].insert(2, configuration("auto") | {"name": "twin"})
+    for c in heavy["configurations"]:
+        c["all_pixels"] = {key: c[key] for key in ("time_to_target", "equal_time", "equal_samples", "efficiency")}
     under, _ = full()
     under["images"] = []
     for c in under["configurations"]:
@@ -359,7 +365,7 @@ def odd():
     unknown["configurations"][0]["time_to_target"] |= {"seconds": None, "ratio": None, "verdict": "not reached"}
     nothing = {
         name: (report, [])
-        for name, report in (("once", once), ("crowd", crowd), ("under", under), ("unknown", unknown))
+        for name, report in (("once", once), ("crowd", crowd), ("heavy", heavy), ("under", under), ("unknown", unknown))
     }
     return {"alone": (alone, packed)} | nothing
 

@@ -209,7 +209,7 @@ class Page(unittest.TestCase):
                 self.assertGreater(papers["light"], 3 * papers["dark"])
 
     def test_odd_reports_are_drawn(self):
-        """One configuration, one checkpoint, eleven configurations, errors of nothing, hardly anything known."""
+        """One configuration, one checkpoint, eleven configurations, a heavy tail, errors of nothing, hardly anything known."""
         for name in report_sample.odd():
             for width in WIDTHS:
                 with self.subTest(name, width=width):
@@ -224,6 +224,10 @@ class Page(unittest.TestCase):
                             "return [...document.querySelectorAll('#method .swatch')].map(e => e.innerHTML)"
                         )
                         self.assertEqual(len(set(looks)), 11)
+                    if name == "heavy":
+                        scrolling = "return [...document.querySelectorAll('.table')].filter(e => e.scrollWidth > e.clientWidth).length"
+                        self.assertEqual(self.run_js(scrolling), 0)
+                        self.assertEqual(self.count("table[aria-label='with all pixels'] tbody tr"), 6)
                     if name == "under":
                         self.assertIn("nothing is left", self.text("#error [aria-live]"))
 

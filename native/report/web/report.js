@@ -172,7 +172,7 @@
         const classes = [kind, cell.class, content === kNone ? "none" : null].filter(known).join(" ");
         return [h("td", { role: "cell", class: classes || null, style: cell.style, "data-label": text }, content)];
       })));
-    const dense = shown.filter((x) => x).length > 7 && className === "heat";
+    const dense = shown.filter((x) => x).length > 6 && className === "heat";
     return h("div", { class: "table" }, h("table", { role: "table", class: dense ? `${className} dense` : className, "aria-label": label },
       h("thead", { role: "rowgroup" }, h("tr", { role: "row" }, head)), h("tbody", { role: "rowgroup" }, body)));
   }
