@@ -476,7 +476,8 @@ class Reporter {
     if (sampled == 0) return {};
     for (size_t t = 0; t < kTechniques; ++t)
       if (!m.fractions[t].empty()) j[kTechniqueNames[t]] = mean[t] / double(sampled);
-    j["clamped"] = needsMoments(s.allocation) ? json(double(clamped) / double(pixels)) : json();
+    const bool hasLeast = needsMoments(s.allocation) && s.allocation != Allocation::kAuto;
+    j["clamped"] = hasLeast ? json(double(clamped) / double(pixels)) : json();
     j["starved"] = double(starved) / double(pixels);
     return j;
   }

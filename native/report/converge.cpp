@@ -40,6 +40,7 @@ constexpr const char* kLayer = "ViewLayer";
 
 // An object.
 json readJson(const fs::path& path) {
+  if (!fs::is_regular_file(path)) throw Error(ExitCode::kFile, path.string() + ": is no file", "remove it");
   std::ifstream in(path);
   try {
     json j = json::parse(in);
@@ -116,6 +117,8 @@ class Study {
     for (const fs::path& manifest : plan_.external) readManifest(manifest);
     std::optional<Reference> reference;
     if (!plan_.reference.empty()) reference = given();
+    identify(false);
+    if (maxSpp_ == 0) choose();  // refuses before there is a folder
     makeFolder(plan_.folder);
     const FolderLock lock(plan_.folder);
     identify(true);
@@ -198,7 +201,6 @@ class Study {
             fmt::format("{} holds '{}' of a study, but no study.json to say of which", plan_.folder.string(), left),
             "choose another folder, or delete this one");
     if (!write) return;
-    choose();
     identity["chosen_spp"] = maxSpp_;
     identity["reference_spp"] = referenceSpp_;
     identity["started"] = e.started;
@@ -344,6 +346,27 @@ class Study {
     return r;
   }
 
+  // An image that an earlier start has left, of the study's size and with a Combined pass: nothing, if it is not whole.
+  std::optional<ExrImage> whole(const fs::path& path) const {
+    if (!fs::exists(path)) return {};
+    try {
+      ExrImage image = readExr(path);
+      if (image.width == experiment_.width && image.height == experiment_.height) {
+        rgbOf(image, path);
+        return image;
+      }
+    } catch (const Error&) {
+    }
+    return {};
+  }
+
+  std::optional<ExrImage> chunkOf(const fs::path& path) const {
+    std::optional<ExrImage> image = whole(path);
+    if (!image && fs::exists(path) && observer_.warn)
+      observer_.warn(path.string() + " is damaged; that part of the reference is rendered again");
+    return image;
+  }
+
   void makeReference(const std::string& key, RenderSettings s, size_t index) {
     const std::string suffix = index == 0 ? "" : fmt::format("-{}", index + 1);
     const fs::path folder = plan_.folder / ("reference" + suffix),
@@ -360,7 +383,8 @@ class Study {
     ImageMean mean;
     for (uint32_t k = 0; k < kReferenceChunks; ++k) {
       const fs::path chunk = folder / fmt::format("chunk-{}.exr", k + 1);
-      if (!fs::exists(chunk)) {
+      std::optional<ExrImage> found = chunkOf(chunk);
+      if (!found) {
         s.seed = kReferenceSeed + k;
         Statistics st;
         RenderObserver watch;
@@ -375,16 +399,11 @@ class Study {
         ExrImage image = toPasses(film, {{"Combined", "RGBA", "combined"}}, kLayer, built_.scene.zUp);
         image.attributes.emplace_back("wardmis:seconds", fmt::format("{}", st.pilotSeconds + st.renderSeconds));
         writeExr(chunk, image, true);
+        found = readExr(chunk);
       }
-      const ExrImage exr = readExr(chunk);
-      for (const auto& [name, value] : exr.attributes)
+      for (const auto& [name, value] : found->attributes)
         if (name == "wardmis:seconds") r.seconds += std::atof(value.c_str());
-      if (exr.width != experiment_.width || exr.height != experiment_.height)
-        throw Error(ExitCode::kFile,
-                    fmt::format("{} has {} x {} pixels, the study {} x {}", chunk.string(), exr.width, exr.height,
-                                experiment_.width, experiment_.height),
-                    "the file is none of this study's; delete it");
-      mean.add(rgbOf(exr, chunk));
+      mean.add(rgbOf(*found, chunk));
     }
     r.image = mean.mean();
     r.setVariance(mean.variance());
@@ -418,9 +437,8 @@ class Study {
       makeFolder(folder);
       const fs::path file = folder / fmt::format("seed-{:04}.json", seed);
       Run run;
-      if (std::optional<Run> earlier = finished(file)) {
+      if (std::optional<Run> earlier = finished(file, seed)) {
         run = std::move(*earlier);
-        checkRun(run, seed, file);
       } else {
         const auto tellRun = [&](double part) {
           const double done = (double(j) + part) / double(jobs.size()), spent = wallSeconds() - start_;
@@ -438,28 +456,29 @@ class Study {
       std::sort(r.begin(), r.end(), [](const Run& a, const Run& b) { return a.seed < b.seed; });
   }
 
-  // What an earlier start has left of a run: nothing, if it is not whole.
-  std::optional<Run> finished(const fs::path& file) const {
+  // What an earlier start has left of a run: nothing, if it is not whole. Throws where it is another study's.
+  std::optional<Run> finished(const fs::path& file, uint64_t seed) const {
     const fs::path image = fs::path(file).replace_extension(".exr");
     if (!fs::exists(file) || !fs::exists(image)) return {};
-    std::ifstream in(file);
+    const auto damaged = [&](const fs::path& which) -> std::optional<Run> {
+      if (observer_.warn) observer_.warn(which.string() + " is damaged; the run is done again");
+      return {};
+    };
+    if (!fs::is_regular_file(file)) throw Error(ExitCode::kFile, file.string() + ": is no file", "remove it");
     try {
+      std::ifstream in(file);
       Run run = runFromJson(json::parse(in));
+      std::vector<uint32_t> spp;
+      for (const Checkpoint& c : run.checkpoints) spp.push_back(c.spp);
+      if (spp != experiment_.checkpoints || run.seed != seed)
+        throw Error(ExitCode::kFile, fmt::format("{}: is not what a run of this study has measured", file.string()),
+                    "delete the file, and go on");
+      if (!whole(image)) return damaged(image);
       run.image = image;
       return run;
     } catch (const json::exception&) {
-      if (observer_.warn) observer_.warn(file.string() + " is damaged; the run is done again");
-      return {};
+      return damaged(file);
     }
-  }
-
-  // That a file holds what this study's runs hold.
-  void checkRun(const Run& run, uint64_t seed, const fs::path& file) const {
-    std::vector<uint32_t> spp;
-    for (const Checkpoint& c : run.checkpoints) spp.push_back(c.spp);
-    if (spp != experiment_.checkpoints || run.seed != seed)
-      throw Error(ExitCode::kFile, fmt::format("{}: is not what a run of this study has measured", file.string()),
-                  "delete the file, and go on");
   }
 
   bool measureRun(Configuration& c, uint64_t seed, const fs::path& file, Run& run,

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
 #include "film/exr.h"
 #include "math/error.h"
@@ -56,6 +57,17 @@ json toJson(const Run& run) {
           {"checkpoints", std::move(checkpoints)}};
 }
 
+namespace {
+
+// A time or an error.
+double measured(const json& j) {
+  const double x = j;
+  if (!(x >= 0 && std::isfinite(x))) throw json::other_error::create(501, "a negative time or error", &j);
+  return x;
+}
+
+}  // namespace
+
 Run runFromJson(const json& j) {
   Run run;
   run.seed = j.at("seed");
@@ -71,11 +83,11 @@ Run runFromJson(const json& j) {
   for (const json& c : j.at("checkpoints")) {
     Checkpoint at;
     at.spp = c.at("spp");
-    at.time.wall = c.at("wall");
+    at.time.wall = measured(c.at("wall"));
     at.cpuKnown = !c.at("cpu").is_null();
-    if (at.cpuKnown) at.time.cpu = c.at("cpu");
+    if (at.cpuKnown) at.time.cpu = measured(c.at("cpu"));
     at.cameraRays = c.at("camera_rays"), at.rays = c.at("rays");
-    for (const MetricInfo& m : allMetrics()) at.error.*m.value = c.at(m.name);
+    for (const MetricInfo& m : allMetrics()) at.error.*m.value = measured(c.at(m.name));
     run.checkpoints.push_back(at);
   }
   return run;

@@ -251,7 +251,7 @@ class Converge(CommandTest):
         self.refused(
             2, "converge", self.scene(), "-o", self.folder / "poor", "--budget-seconds", "0.2", says=("give at least",)
         )
-        self.assertFalse((self.folder / "poor" / "report.html").exists())
+        self.assertFalse((self.folder / "poor").exists())
 
     def test_a_given_reference_is_held_against(self):
         self.render(
@@ -290,7 +290,9 @@ class Converge(CommandTest):
             said, "direct estimates direct light, equal paths, depth 8: .* each held against its own reference"
         )
         self.assertNotRegex(said, "(strata|costly) estimate")
-        self.assertEqual(self.of(report, "costly")["settings"]["cost"], [1, 1, 2])
+        costly = self.of(report, "costly")
+        self.assertEqual(costly["settings"]["cost"], [1, 1, 2])
+        self.assertIsNone(costly["allocation"]["clamped"], "auto has no least share")
         errors = [at["relmse"]["mean"] for at in self.of(report, "strata")["curve"]]
         self.assertEqual(errors, sorted(errors, reverse=True))
         self.assertIn("only 3 seeds", " ".join(report["finding"]))
@@ -353,6 +355,28 @@ class Converge(CommandTest):
         again = json.loads((folder / "seed-0002.json").read_text())
         self.assertEqual([c["relmse"] for c in again["checkpoints"]], [c["relmse"] for c in whole["checkpoints"]])
         self.assertEqual(report["provenance"]["started"], started, "the first time")
+        # images cut off or of another size, figures that cannot be
+        image, other = folder / "seed-0002.exr", folder / "seed-0004.exr"
+        image.write_bytes(image.read_bytes()[:-200])
+        write_rgb(other, np.zeros((16, 24, 3)))
+        wrong = json.loads((folder / "seed-0001.json").read_text())
+        wrong["checkpoints"][0]["relmse"] = -1
+        (folder / "seed-0001.json").write_text(json.dumps(wrong))
+        chunk = self.folder / "study/reference/chunk-3.exr"
+        chunk.write_bytes(chunk.read_bytes()[:-200])
+        done, after = self.quick()
+        for name in (image.name, other.name, "seed-0001.json"):
+            self.assertIn(f"{name} is damaged; the run is done again", done.stderr)
+        self.assertIn("chunk-3.exr is damaged; that part of the reference is rendered again", done.stderr)
+        for name in ("equal", "second-moment"):
+            now, before = self.of(after, name)["curve"][-1], self.of(report, name)["curve"][-1]
+            self.assertEqual({**now, "wall": 0, "cpu": 0}, {**before, "wall": 0, "cpu": 0})
+        (folder / "seed-0003.json").unlink()
+        (folder / "seed-0003.json").mkdir()
+        self.refused(
+            4, "converge", self.scene(), "-o", self.folder / "study", "--resolution", "48x32", "--max-spp", 8, "--seeds", 4,
+            "-c", "equal", "-c", "second-moment", says=("seed-0003.json: is no file",),
+        )  # fmt: skip
 
     def test_a_refused_command_leaves_no_study(self):
         """The right one works in the same folder."""
