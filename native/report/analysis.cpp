@@ -145,7 +145,8 @@ class Reporter {
     clock_ = scattered_ && cpuKnown ? &Clocks::cpu : &Clocks::wall;
     time_ = 1e300;
     for (const Measured& m : measured_)
-      for (const Run& run : *m.runs) time_ = std::min(time_, run.checkpoints.back().time.*clock_);  // within every curve
+      for (const Run& run : *m.runs)
+        time_ = std::min(time_, run.checkpoints.back().time.*clock_);  // within every curve
     goal_ = goalOf(heavy ? &Metrics::relMseTrimmed : &Metrics::relMse);
     if (heavy) allPixels_ = goalOf(&Metrics::relMse);
   }
@@ -161,8 +162,7 @@ class Reporter {
       const auto last = Bootstrap(curves.seeds()).interval([&](std::span<const uint32_t> draw) {
         return std::optional(curves.mean(draw, curves.checkpoints() - 1).error.back());
       });
-      target = std::max(
-          {target, last ? kTargetFactor * last->high : 0, kFloorFactor * floorOf(*m.reference, metric)});
+      target = std::max({target, last ? kTargetFactor * last->high : 0, kFloorFactor * floorOf(*m.reference, metric)});
     }
     return {&metric, e_.target.value_or(target > 0 ? roundUp(target) : 1e-3)};
   }
@@ -363,7 +363,8 @@ class Reporter {
     const auto own = bootstrap.interval([&](std::span<const uint32_t> draw) { return product(m, draw); });
     const auto byRays = bootstrap.interval([&](std::span<const uint32_t> draw) -> std::optional<double> {
       double variance = 0, rays = 0;
-      for (const uint32_t i : draw) variance += spreadOf(m, i, *goal.metric), rays += double((*m.runs)[i].checkpoints.back().rays);
+      for (const uint32_t i : draw)
+        variance += spreadOf(m, i, *goal.metric), rays += double((*m.runs)[i].checkpoints.back().rays);
       const double n = double(draw.size());
       return rays > 0 ? std::optional(variance / n * (rays / n)) : std::nullopt;
     });

@@ -66,6 +66,7 @@ std::vector<std::string> otherLight(const json& r) {
   for (const json& c : r["configurations"])
     if (c["estimates"].is_string() && c["estimates"] != base["estimates"]) others[c["estimates"]].push_back(c["name"]);
   std::vector<std::string> said;
+  said.reserve(others.size());
   for (const auto& [light, names] : others)
     said.push_back(fmt::format(
         "{} estimate{} {}, {} {}: these are images of different light, {}, and neither is better for being sooner.",
@@ -185,10 +186,11 @@ std::vector<std::string> finding(const json& r) {
         "The mean over the seeds differs from the reference for {}: its error does not vanish with more samples.",
         list(biased)));
   if (!unclear.empty())
-    said.push_back(fmt::format(
-        "Parts of the image differ from the reference for {}, as rare light does that few seeds have met: whether it is "
-        "chance or bias, more seeds would tell.",
-        list(unclear)));
+    said.push_back(
+        fmt::format("Parts of the image differ from the reference for {}, as rare light does that few seeds have met: "
+                    "whether it is "
+                    "chance or bias, more seeds would tell.",
+                    list(unclear)));
   if (!heavy.empty())
     said.push_back(
         fmt::format("Rare large samples carry much of the error of {}: the comparison therefore leaves out the largest "

@@ -99,14 +99,13 @@ std::string configurationsCsv(const json& report) {
   const auto part = [](const json& c, const char* object, const char* key) {
     return c[object].is_object() ? c[object][key] : json();
   };
-  std::string csv = "configuration,renderer,runs,target_relmse," + header("seconds_to_target") + ',' +
-                    header("time_ratio") + ",verdict," + header("equal_time_ratio") + ',' +
-                    header("equal_samples_ratio") + ',' + header("variance_x_seconds") + ',' +
-                    header("variance_x_seconds_ratio") +
-                    ",slope,slope_low,slope_high,slope_cause,bias,bias_image_z,kurtosis,better,worse,undecided" +
-                    ",all_pixels_target_relmse," + header("all_pixels_seconds_to_target") + ',' +
-                    header("all_pixels_time_ratio") + ',' + header("all_pixels_equal_time_ratio") + ',' +
-                    header("all_pixels_equal_samples_ratio") + '\n';
+  std::string csv =
+      "configuration,renderer,runs,target_relmse," + header("seconds_to_target") + ',' + header("time_ratio") +
+      ",verdict," + header("equal_time_ratio") + ',' + header("equal_samples_ratio") + ',' +
+      header("variance_x_seconds") + ',' + header("variance_x_seconds_ratio") +
+      ",slope,slope_low,slope_high,slope_cause,bias,bias_image_z,kurtosis,better,worse,undecided" +
+      ",all_pixels_target_relmse," + header("all_pixels_seconds_to_target") + ',' + header("all_pixels_time_ratio") +
+      ',' + header("all_pixels_equal_time_ratio") + ',' + header("all_pixels_equal_samples_ratio") + '\n';
   for (const json& c : report["configurations"]) {
     csv += cell(c["name"]) + ',' + cell(c["renderer"]) + ',' + cell(c["runs"]) + ',' +
            cell(part(c, "time_to_target", "target")) + ',' + cells(part(c, "time_to_target", "seconds")) + ',' +
@@ -117,10 +116,9 @@ std::string configurationsCsv(const json& report) {
     csv += cell(part(c, "bias", "verdict")) + ',' + cell(part(c, "bias", "image_z")) + ',' +
            cell(part(c, "tail", "kurtosis"));
     for (const char* key : {"better", "worse", "undecided"}) csv += ',' + cell(part(c, "wins", key));
-    const json all = c["all_pixels"].is_object() ? c["all_pixels"]
-                                                 : json{{"time_to_target", nullptr},
-                                                        {"equal_time", nullptr},
-                                                        {"equal_samples", nullptr}};
+    const json all = c["all_pixels"].is_object()
+                         ? c["all_pixels"]
+                         : json{{"time_to_target", nullptr}, {"equal_time", nullptr}, {"equal_samples", nullptr}};
     csv += ',' + cell(part(all, "time_to_target", "target")) + ',' + cells(part(all, "time_to_target", "seconds")) +
            ',' + cells(part(all, "time_to_target", "ratio")) + ',' + cells(part(all, "equal_time", "ratio")) + ',' +
            cells(part(all, "equal_samples", "ratio"));

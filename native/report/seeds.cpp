@@ -88,8 +88,7 @@ BiasTest testBias(const std::vector<RgbImage>& images, const Reference& referenc
   };
   // a difference that the seeds' own spread does not explain, and the reference's does
   const auto isUnmet = [&](double s, double extra, double threshold) {
-    return samples > 0 && extra > 0 &&
-           pOfStudent(s / n / std::sqrt(extra * (1 + samples)), n - 1) >= threshold;
+    return samples > 0 && extra > 0 && pOfStudent(s / n / std::sqrt(extra * (1 + samples)), n - 1) >= threshold;
   };
   BiasTest test;
   std::vector<double> z(truth.size());

@@ -18,8 +18,9 @@ inline constexpr double kHeavySeeds = 3;     // largest over median error of a s
 
 // z-tests of the mean over seeds against the reference: blocks, each by Student's t over the seeds, Sidak over all of
 // them; and the image as a whole.
-// Seeds that have all missed a rare light agree with each other, and are sure of too dark a block. The reference has met
-// it, and its variance says how much so few samples could be off: a difference that is not beyond that tells nothing.
+// Seeds that have all missed a rare light agree with each other, and are sure of too dark a block. The reference has
+// met it, and its variance says how much so few samples could be off: a difference that is not beyond that tells
+// nothing.
 struct BiasTest {
   size_t blocks = 0, failed = 0;
   size_t unmet = 0;         // of the failed: not beyond what so few of the reference's samples would be off

@@ -19,6 +19,8 @@ ALLOCATIONS = {
     "representativity": 0.9,
     "auto": 0.65,
 }
+POOR_SECONDS = 0.01  # a budget that is refused
+CHOSEN_SAMPLES = 4  # where there is one
 FIRST_ERROR = 0.5  # of `equal` at one sample per pixel
 
 
@@ -46,6 +48,12 @@ def parse():
 def converge(options, film, mode):
     if options.check:
         return None
+    if options.budget_seconds:
+        if float(options.budget_seconds) < POOR_SECONDS:
+            message = f"--budget-seconds {options.budget_seconds}: too little; give at least {POOR_SECONDS} s"
+            say(event="error", code=2, message=message)
+            return 2
+        options.max_spp = CHOSEN_SAMPLES
     names = [c.split(":")[0] for c in options.configuration or ["equal", "variance", "second-moment", "auto"]]
     x0, y0, x1, y1 = film["border"]
     size = {"width": x1 - x0, "height": y1 - y0}
@@ -74,6 +82,7 @@ def converge(options, film, mode):
         (external["name"], external["renderer"]) for external in externals
     ]
     if mode != "nothing":
+        (folder / "study.json").write_text(json.dumps({"chosen_spp": options.max_spp}))
         write_exr(folder / "reference.exr", "ViewLayer", {"Combined": "RGBA", "Variance": "RGB"}, film)
         for name, _ in labels:
             write_exr(folder / "images" / f"{name}.exr", "ViewLayer", {"Combined": "RGBA"}, film)

@@ -96,6 +96,17 @@ class Background(PanelTest):
         # the scene is the user's, and has not been rendered by this Blender
         self.assertEqual(self.scene.render.engine, "WARDMIS")
 
+    def test_a_budget_with_cycles(self):
+        self.settings.use_cycles = True
+        self.settings.stop_by, self.settings.seconds = "seconds", 60
+        folder = self.compare()
+        first, second = self.calls()
+        self.assertNotIn("--external", first)
+        self.assertIn("--external", second)
+        self.assertIn("Cycles", properties.report().image_names)
+        manifest = json.loads((folder / "cycles" / "manifest.json").read_text())
+        self.assertEqual(sorted({run["spp"] for run in manifest["runs"]}), [1, 2, 4])
+
     def test_cancel_ends_the_other_blender(self):
         self.settings.use_cycles = True
         self.settings.samples, self.settings.cycles_seeds = 4096, 100

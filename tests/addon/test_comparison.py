@@ -19,7 +19,7 @@ import numpy as np
 import wardmis
 from comparison_support import SMALL, ComparisonTest
 from support import ADDON, FAKE, HERE, read_exr
-from wardmis.comparison import converge, cycles_settings
+from wardmis.comparison import converge, cycles, cycles_settings, lock
 from wardmis.comparison.exr import read_header, read_pass
 from wardmis.comparison.manifest import Manifest
 from wardmis.comparison.overrides import overridden
@@ -84,14 +84,53 @@ class Comparing(ComparisonTest):
         self.assertFalse((self.folder / "cycles").exists())
 
     def test_budget_is_shared_with_cycles(self):
-        wardmis.compare(self.folder, budget_seconds=0.001, cycles_seeds=5, **SMALL)
-        arguments = self.calls()[-1]
-        self.assertEqual(arguments[arguments.index("--budget-seconds") + 1], "0.0005")
-        self.assertNotIn("--max-spp", arguments)
-        # two whole seeds and the reference are what a comparison cannot do without
+        """WardMIS' half decides on the samples, and Cycles has as many where they fit into its own."""
+        wardmis.compare(self.folder, budget_seconds=60, **SMALL)
+        first, second = self.calls()
+        for arguments in (first, second):
+            self.assertEqual(arguments[arguments.index("--budget-seconds") + 1], "30")
+            self.assertNotIn("--max-spp", arguments)
+        self.assertEqual(second[:-2], first)
+        self.assertEqual(second[-2], "--external")
         data = self.manifest()
-        self.assertEqual([(r["seed"], r["spp"]) for r in data["runs"]], [(1, 1), (1, 2), (2, 1), (2, 2)])
+        self.assertEqual([(r["seed"], r["spp"]) for r in data["runs"]], [(s, n) for s in (1, 2) for n in (1, 2, 4)])
         self.assertEqual(len(data["reference"]["images"]), 4)
+
+    def test_samples_that_a_budget_allows(self):
+        """Of renders whose costs are known: 0.1 s each, and 0.01 s a sample; two seeds, and four images of eight times the samples."""
+        for budget, samples in ((10, 8), (30, 32), (1e6, 64), (5.5, 4), (5, None)):
+            plan = cycles.CyclesPlan([1, 2], 64, budget_seconds=budget)
+            manifest = Manifest(self.folder / "cycles" / "manifest.json", {"settings": {}, "renderer": ""})
+            renders = cycles._Renders(self.scene, bpy.context.view_layer, manifest, plan, lambda _event: None)
+            renders.one_pixel_wall = [0.1]
+            with mock.patch.object(renders, "_timed", lambda spp, _seed: (0.1 + 0.01 * spp, 0.0)):
+                if samples is None:
+                    with self.assertRaisesRegex(
+                        RuntimeError, "4 samples per pixel by Cycles take about 2 s.* give at least"
+                    ):
+                        renders._affordable(budget / 2, 64)
+                else:
+                    self.assertEqual(renders._affordable(budget / 2, 64), samples, budget)
+
+    def test_a_budget_that_is_too_small_is_refused_at_once(self):
+        with self.assertRaisesRegex(
+            RuntimeError, "give at least 0.01 s; that is WardMIS' half of the budget: give twice"
+        ):
+            wardmis.compare(self.folder, budget_seconds=0.001, **SMALL)
+        self.assertFalse(self.folder.exists())
+        # Cycles' own half
+        with self.assertRaisesRegex(RuntimeError, "4 samples per pixel by Cycles .* keeps the report without it"):
+            wardmis.compare(self.folder, budget_seconds=0.02, **SMALL)
+        self.assertTrue((self.folder / "report.html").is_file())
+
+    def test_one_process_at_a_time(self):
+        (self.folder / "cycles").mkdir(parents=True)
+        with (
+            lock.alone(self.folder / "cycles"),
+            self.assertRaisesRegex(RuntimeError, "another process is rendering into"),
+        ):
+            wardmis.compare(self.folder, **SMALL)
+        wardmis.compare(self.folder, **SMALL)
 
     def test_progress_is_told(self):
         events = []
@@ -344,9 +383,9 @@ class Resuming(ComparisonTest):
         scene = self.folder / "scene.glb"
         kept, place = scene.read_bytes(), self.camera.location.z
         self.camera.location.z = 4
-        for cycles in (True, False):
+        for with_cycles in (True, False):
             with self.assertRaisesRegex(RuntimeError, "holds a comparison of another scene.* choose another output"):
-                wardmis.compare(self.folder, **{**SMALL, "cycles": cycles})
+                wardmis.compare(self.folder, **{**SMALL, "cycles": with_cycles})
         self.assertEqual(scene.read_bytes(), kept)
         self.assertEqual([p.name for p in self.folder.iterdir() if p.suffix == ".tmp"], [])
         self.camera.location.z = place
@@ -454,9 +493,9 @@ class Files(unittest.TestCase):
         self.assertTrue(reason.endswith("of material 'A', 'B', 'C' and 2 more"), reason)
 
     def test_checkpoints(self):
-        self.assertEqual(converge.Study(max_spp=1).checkpoints, [1])
-        self.assertEqual(converge.Study(max_spp=64).checkpoints, [1, 2, 4, 8, 16, 32, 64])
-        self.assertEqual(converge.Study(max_spp=48).checkpoints, [1, 2, 4, 8, 16, 32, 48])
+        self.assertEqual(converge.checkpoints(1), [1])
+        self.assertEqual(converge.checkpoints(64), [1, 2, 4, 8, 16, 32, 64])
+        self.assertEqual(converge.checkpoints(48), [1, 2, 4, 8, 16, 32, 48])
 
 
 INTERRUPTS = """

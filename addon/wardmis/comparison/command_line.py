@@ -44,7 +44,9 @@ def parser(program: str) -> argparse.ArgumentParser:
     )
     result.add_argument("--seed", type=int, default=1, metavar="FIRST", help="the first one's (%(default)s)")
     result.add_argument("--max-spp", type=int, default=64, metavar="N", help="samples per pixel (%(default)s)")
-    result.add_argument("--budget-seconds", type=float, metavar="S", help="of all; with Cycles, half of it is Cycles'")
+    result.add_argument(
+        "--budget-seconds", type=float, metavar="S", help="instead: of all; with Cycles, half of it is Cycles'"
+    )
     result.add_argument("--reference", metavar="FILE.exr", help="a given one")
     result.add_argument("--reference-time", type=float, metavar="S", help="of the reference that is made")
     result.add_argument("--target", type=float, metavar="E", help="relMSE that the time is taken to")

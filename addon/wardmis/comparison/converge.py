@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,6 +12,12 @@ from typing import Any
 OWN = "scene"  # the configuration that the scene's own settings are
 DEFAULT_CONFIGURATIONS = ("equal", "variance", "second-moment", "auto")
 STOPPED = 130  # the exit code of a comparison that was stopped
+
+
+def checkpoints(max_spp: int) -> list[int]:
+    """1, 2, 4 ... and the last."""
+    powers = [1 << k for k in range(max_spp.bit_length()) if 1 << k < max_spp]
+    return [*powers, max_spp]
 
 
 @dataclass
@@ -29,12 +36,6 @@ class Study:
     title: str = ""
     threads: int = 0
 
-    @property
-    def checkpoints(self) -> list[int]:
-        """1, 2, 4 ... and the last."""
-        powers = [1 << k for k in range(self.max_spp.bit_length()) if 1 << k < self.max_spp]
-        return [*powers, self.max_spp]
-
 
 @dataclass
 class Outcome:
@@ -52,6 +53,24 @@ class Outcome:
     @property
     def report_json(self) -> Path:
         return self.folder / "report.json"
+
+
+def chosen_spp(folder: Path) -> int:
+    """Samples per pixel of the runs of the command's study in `folder`. Raises RuntimeError where there is none."""
+    path = folder / "study.json"
+    try:
+        return int(json.loads(path.read_text(encoding="utf-8"))["chosen_spp"])
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise RuntimeError(
+            f"WardMIS: {path} does not say how many samples the runs have ({error}); delete the folder"
+        ) from error
+
+
+def explain_half(message: str) -> str:
+    """A refusal of half a budget names the half, where the user has given the whole."""
+    if "--budget-seconds" not in message:
+        return message
+    return f"{message}; that is WardMIS' half of the budget: give twice as much, or compare without Cycles"
 
 
 def arguments(study: Study, settings: Any, outcome: Outcome) -> list[str]:

@@ -19,16 +19,22 @@ from typing import Any
 import bpy
 
 from . import cycles_settings, interrupt
+from .converge import checkpoints, chosen_spp
 from .exr import read_header
+from .lock import alone
 from .manifest import Manifest
 from .overrides import overridden
 from .scene_file import SceneFile
 
+REFERENCE_FACTOR = 8  # samples of each of the reference images, over the largest number of a run
 REFERENCE_IMAGES = 4  # independent ones, so that the variance of their mean is known
 # far from any that a run has, so that nothing is compared with its own samples
 REFERENCE_SEED = 1_000_003
 CUT_OFF_SECONDS = 0.01  # Cycles states its time without what is below
 ONE_PIXEL_RENDERS = 3
+PROBE_SAMPLES = 8  # of the render that tells what a sample costs, where there is a budget
+FEWEST_SAMPLES = 4  # for which a budget must suffice, as WardMIS' own
+BUDGET_SHARE = 0.9  # the rest is for what cannot be foreseen
 CERTAIN = 5  # a CPU time is stated where it is so many times as large as what the synchronisation varies by
 WITHOUT_DENOISER = (
     "Cycles' images are not denoised, as the scene's settings would have it: this Blender was built without Open Image Denoise; "
@@ -41,11 +47,15 @@ Progress = Callable[[dict[str, Any]], None]
 @dataclass
 class CyclesPlan:
     seeds: list[int]
-    checkpoints: list[int]  # samples per pixel
-    reference_spp: int  # of each of the REFERENCE_IMAGES
+    max_spp: int  # samples per pixel of the last checkpoint
+    reference_spp: int | None = None  # of each of the REFERENCE_IMAGES; else REFERENCE_FACTOR times a run's
     as_is: bool = False
     threads: int = 0
+    # then there are at most as many samples as WardMIS' own study has chosen, which stands in the folder above
     budget_seconds: float | None = None
+
+    def reference_of(self, max_spp: int) -> int:
+        return self.reference_spp or REFERENCE_FACTOR * max_spp
 
 
 def render_cycles(folder: Path, scene_file: SceneFile, plan: CyclesPlan, progress: Progress) -> Path:
@@ -65,10 +75,9 @@ def render_cycles(folder: Path, scene_file: SceneFile, plan: CyclesPlan, progres
         settings.append((scene.cycles, "use_denoising", False))
         lost.append(WITHOUT_DENOISER)
         progress({"event": "warning", "message": WITHOUT_DENOISER})
-    with overridden(settings):
+    with overridden(settings), alone(folder):
         about = _about(scene, layer, scene_file, plan, lost)
-        manifest = Manifest(folder / "manifest.json", about, plan.reference_spp)
-        manifest.write()
+        manifest = Manifest(folder / "manifest.json", about)
         _Renders(scene, layer, manifest, plan, progress).run()
     return manifest.path
 
@@ -112,18 +121,55 @@ class _Renders:
         self.scene, self.layer = scene, layer
         self.manifest, self.plan, self.progress = manifest, plan, progress
         self.one_pixel_cpu: list[float] = []
+        self.one_pixel_wall: list[float] = []
         self.began = time.monotonic()
-        self.work = self._work_left()
-        self.all = sum(spp for _, _, spp in self.work)
-        self.done = 0
+        self.work: list[tuple[str, int, int]] = []
+        self.all = self.done = 0
 
-    def _work_left(self) -> list[tuple[str, int, int]]:
+    def _is_to_afford(self) -> bool:
+        """Whether a budget has still to decide on the samples; once it has, the comparison goes on as it began."""
+        return self.plan.budget_seconds is not None and self.manifest.max_spp is None
+
+    def _decide_samples(self) -> int:
+        """Samples per pixel of the last checkpoint."""
+        plan, manifest = self.plan, self.manifest
+        spp = plan.max_spp if plan.budget_seconds is None else manifest.max_spp
+        if spp is None:
+            assert plan.budget_seconds is not None
+            spp = self._affordable(plan.budget_seconds, chosen_spp(manifest.path.parent.parent))
+        manifest.decide(spp, plan.reference_of(spp))
+        return spp
+
+    def _affordable(self, budget: float, most: int) -> int:
+        """The largest number of samples whose renders fit into the budget."""
+        synchronisation = statistics.median(self.one_pixel_wall)
+        wall, _ = self._timed(PROBE_SAMPLES, 0)
+        sample = max(0.0, wall - synchronisation) / PROBE_SAMPLES
+        spent = time.monotonic() - self.began
+        place = self.manifest.path.parent.parent
+
+        def seconds(spp: int) -> float:
+            points = checkpoints(spp)
+            run = len(points) * synchronisation + sum(points) * sample
+            reference = synchronisation + self.plan.reference_of(spp) * sample
+            return spent + len(self.plan.seeds) * run + REFERENCE_IMAGES * reference
+
+        possible = [spp for spp in checkpoints(most) if spp >= FEWEST_SAMPLES] or [most]
+        fitting = [spp for spp in possible if seconds(spp) <= BUDGET_SHARE * budget]
+        if not fitting:
+            raise RuntimeError(
+                f"WardMIS: {possible[0]} samples per pixel by Cycles take about {seconds(possible[0]):.0f} s here, with {len(self.plan.seeds)} "
+                f"seeds and the reference, and its half of the budget is {budget:.3g} s; give at least "
+                f"{2 * seconds(possible[0]) / BUDGET_SHARE:.0f} s in all, or fewer seeds of Cycles or a lower resolution; "
+                f"{place} keeps the report without it"
+            )
+        return fitting[-1]
+
+    def _work_left(self, points: list[int]) -> list[tuple[str, int, int]]:
         """(kind, seed, spp): two seeds first, without which there is no interval, then the reference, then the other seeds."""
-        runs = [("run", seed, spp) for seed in self.plan.seeds for spp in self.plan.checkpoints]
-        first = 2 * len(self.plan.checkpoints)
-        references = [
-            ("reference", REFERENCE_SEED + i, self.manifest.data["reference"]["spp"]) for i in range(REFERENCE_IMAGES)
-        ]
+        runs = [("run", seed, spp) for seed in self.plan.seeds for spp in points]
+        first = 2 * len(points)
+        references = [("reference", REFERENCE_SEED + i, self.manifest.reference_spp) for i in range(REFERENCE_IMAGES)]
         work = [*runs[:first], *references, *runs[first:]]
         return [item for item in work if not self._is_there(*item)]
 
@@ -133,9 +179,14 @@ class _Renders:
         )
 
     def run(self) -> None:
+        if self._is_to_afford():
+            self._measure_synchronisation()
+        self.work = self._work_left(checkpoints(self._decide_samples()))
+        self.all = sum(spp for _, _, spp in self.work)
         if not self.work:
             return
-        self._measure_synchronisation()
+        if not self.one_pixel_cpu:
+            self._measure_synchronisation()
         needed = {("run", seed) for seed in self.plan.seeds[:2]}
         unit = None  # the seed, or the reference, that is being rendered
         for kind, seed, spp in self.work:
@@ -183,14 +234,16 @@ class _Renders:
         ]
         with overridden(pixel):
             # the first one reads images and loads kernels
-            self.one_pixel_cpu = [self._timed(1, 0) for _ in range(1 + ONE_PIXEL_RENDERS)][1:]
+            times = [self._timed(1, 0) for _ in range(1 + ONE_PIXEL_RENDERS)][1:]
+        self.one_pixel_wall = [wall for wall, _ in times]
+        self.one_pixel_cpu = [cpu for _, cpu in times]
 
-    def _timed(self, spp: int, seed: int) -> float:
-        """Renders; returns the CPU seconds of this process."""
+    def _timed(self, spp: int, seed: int) -> tuple[float, float]:
+        """Renders; returns the wall seconds that took, and the CPU seconds of this process."""
         for owner, name, value in cycles_settings.samples(self.scene, spp, seed, self.plan.as_is):
             setattr(owner, name, value)
         place = self.manifest.path.parent.parent
-        began = time.process_time()
+        began, cpu_began = time.monotonic(), time.process_time()
         try:
             with interrupt.busy(place), _cancellation() as cancelled:
                 ended = bpy.ops.render.render(scene=self.scene.name, layer=self.layer.name)
@@ -203,10 +256,11 @@ class _Renders:
             ) from error
         if cancelled or "FINISHED" not in ended:
             raise interrupt.Stopped(place)
-        return time.process_time() - began
+        return time.monotonic() - began, time.process_time() - cpu_began
 
     def _render(self, kind: str, seed: int, spp: int) -> None:
-        cpu: float | None = self._timed(spp, seed) - statistics.median(self.one_pixel_cpu)
+        _, spent = self._timed(spp, seed)
+        cpu: float | None = spent - statistics.median(self.one_pixel_cpu)
         if cpu is not None and cpu < CERTAIN * (max(self.one_pixel_cpu) - min(self.one_pixel_cpu)):
             cpu = None
         name = _name(kind, seed, spp)

@@ -31,7 +31,7 @@ def frame(scene: Any, layer: Any, film: dict[str, Any], threads: int) -> Iterato
     yield cycles, "filter_width", film["filter"]["width"]
     yield cycles, "film_exposure", film["exposure"]
     yield render, "use_crop_to_border", True  # as WardMIS does
-    # each render synchronises alike, and what has been synchronised is not in its time
+    # what has been synchronised is not in a render's time, and kept data does not see that the samples are others
     yield render, "use_persistent_data", False
     # nothing that comes after the renderer
     yield render, "use_compositing", False

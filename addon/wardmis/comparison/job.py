@@ -29,6 +29,7 @@ class Stage:
 
     name: str  # what messages call it
     command: list[str]
+    explain: Callable[[str], str] = str  # what a failure says, to its user
 
 
 class Job:
@@ -46,10 +47,12 @@ class Job:
         self._finished = finished
         self._temporary = temporary
         self._process: Renderer | None = None
+        self._explain: Callable[[str], str] = str
         self._start_next()
 
     def _start_next(self) -> None:
         stage = self._stages.pop(0)
+        self._explain = stage.explain
         self.fraction = 0.0
         try:
             self._process = Renderer(stage.command, stage.name)
@@ -96,7 +99,7 @@ class Job:
                 self.text = progress_text(event)
 
     def _fail(self, message: str) -> None:
-        self.failure = message
+        self.failure = self._explain(message)
         self.stop()
 
     def cancel(self) -> None:

@@ -15,13 +15,13 @@ from typing import Any
 class Manifest:
     """The file `path`, its images beside it."""
 
-    def __init__(self, path: Path, about: dict[str, Any], reference_spp: int) -> None:
+    def __init__(self, path: Path, about: dict[str, Any]) -> None:
         """`about`: name, renderer, settings, notes, common_reference. Takes over what an earlier run has rendered with it.
 
         Raises RuntimeError where the earlier renders are of another scene or were made with other settings.
         """
         self.path = path
-        self.data: dict[str, Any] = {**about, "reference": {"images": [], "spp": reference_spp}, "runs": []}
+        self.data: dict[str, Any] = {**about, "max_spp": None, "reference": {"images": [], "spp": None}, "runs": []}
         if path.exists():
             self._resume(_read(path))
 
@@ -33,8 +33,26 @@ class Manifest:
                     "choose another output folder, or delete that one"
                 )
         self.data["runs"] = [run for run in old["runs"] if self._there(run["path"])]
-        if old["reference"]["spp"] == self.data["reference"]["spp"]:
-            self.data["reference"]["images"] = [name for name in old["reference"]["images"] if self._there(name)]
+        self.data["max_spp"] = old.get("max_spp")
+        images = [name for name in old["reference"]["images"] if self._there(name)]
+        self.data["reference"] = {"images": images, "spp": old["reference"]["spp"]}
+
+    @property
+    def max_spp(self) -> int | None:
+        """Samples per pixel of the last checkpoint; none as long as that is not decided."""
+        return self.data["max_spp"]
+
+    @property
+    def reference_spp(self) -> int:
+        """Of each of the reference's images."""
+        return self.data["reference"]["spp"]
+
+    def decide(self, max_spp: int, reference_spp: int) -> None:
+        """Images of a reference of other samples are no part of it any more."""
+        self.data["max_spp"] = max_spp
+        if self.reference_spp != reference_spp:
+            self.data["reference"] = {"images": [], "spp": reference_spp}
+        self.write()
 
     def _there(self, name: str) -> bool:
         return (self.path.parent / name).is_file()

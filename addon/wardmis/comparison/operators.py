@@ -17,7 +17,7 @@ from ..preferences import renderer_path
 from ..process import RendererError
 from ..properties import ALLOCATIONS
 from . import child, images, job, plot, properties
-from .converge import OWN, Outcome, Study, arguments
+from .converge import OWN, Outcome, Study, arguments, explain_half
 from .run import CYCLES_FOLDER, SCENE_NAME, divide, prepare, scene_title, threads_of
 from .same_scene import same_but_for_rounding, settle
 from .scene_file import read_scene_file
@@ -76,16 +76,23 @@ def begin(context: Any) -> job.Job:
         ) from error
     outcome = Outcome(folder, folder / SCENE_NAME)
     stages, temporary = [], []
+
+    def own() -> job.Stage:
+        command = [str(binary), *arguments(study, scene.wardmis, outcome)]
+        return job.Stage("the renderer", command, explain_half if settings.use_cycles else str)
+
     if settings.use_cycles:
         plan, study = divide(study, settings.cycles_seeds, None, settings.cycles_as_is)
         blend = staging / "scene.blend"
         bpy.ops.wm.save_as_mainfile(filepath=str(blend), copy=True, compress=False)
         temporary.append(blend)
+        if study.budget_seconds is not None:  # finds out how many samples there are to be
+            stages.append(own())
         renders = folder / CYCLES_FOLDER
         outcome.manifest = renders / "manifest.json"
         layer = context.view_layer.name
         stages.append(job.Stage("Cycles", child.command(blend, scene.name, layer, renders, outcome.scene, plan)))
-    stages.append(job.Stage("the renderer", [str(binary), *arguments(study, scene.wardmis, outcome)]))
+    stages.append(own())
     return job.start(folder, stages, _finished, temporary)
 
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import os
 from collections.abc import Callable, Sequence
@@ -15,7 +16,7 @@ from ..operators import export_scene
 from ..preferences import renderer_path
 from ..process import Renderer, RendererError
 from . import interrupt
-from .converge import DEFAULT_CONFIGURATIONS, STOPPED, Outcome, Study, arguments
+from .converge import DEFAULT_CONFIGURATIONS, STOPPED, Outcome, Study, arguments, explain_half
 from .cycles import CyclesPlan, Progress, render_cycles
 from .overrides import Setting, overridden
 from .same_scene import settle
@@ -24,7 +25,6 @@ from .scene_file import read_scene_file
 SCENE_NAME = "scene.glb"
 CYCLES_FOLDER = "cycles"
 RENDERED = ("study.json", f"{CYCLES_FOLDER}/manifest.json")  # a folder with one of them has renders of its scene
-REFERENCE_FACTOR = 8  # samples of each of Cycles' reference images, over the largest number of a run
 FEWEST_SEEDS = 2
 FEWEST_SAMPLES = 2
 POLL_SECONDS = 0.2
@@ -56,7 +56,7 @@ def compare(
     configurations   as the command's --configuration; "scene" is the scene's own settings (equal, variance, second-moment, auto)
     seeds            independent renders of each; cycles_seeds: of Cycles (as many)
     max_spp          renders have 1, 2, 4 ... max_spp samples per pixel
-    budget_seconds   instead of max_spp; with Cycles, half of it is Cycles'
+    budget_seconds   instead of max_spp; with Cycles, half of it is Cycles', which takes as many samples as WardMIS, or fewer
     resolution       width and height instead of the scene's
     as_is            Cycles with the scene's settings for it, else with everything off that biases its image
     progress         is called with each event, a dictionary as in the command's JSON lines
@@ -83,19 +83,31 @@ def compare(
     def note(event: dict[str, Any]) -> None:
         _note(event, outcome, tell)
 
+    folder = Path(bpy.path.abspath(os.fspath(output))).absolute()
+    new = not folder.exists()
     with overridden(_resolution(scene, resolution)):
-        outcome = prepare(Path(bpy.path.abspath(os.fspath(output))).absolute(), study)
+        outcome = prepare(folder, study)
         try:
             command = [str(renderer_path())]  # before Cycles takes its time
         except RendererError as error:
             raise RuntimeError(f"WardMIS: {error}") from error
-        if cycles:
-            _check([*command, *arguments(study, scene.wardmis, outcome), "--check"], outcome)
-            plan, study = divide(study, cycles_seeds, cycles_reference_spp, as_is)
-            renders = outcome.folder / CYCLES_FOLDER
-            outcome.manifest = render_cycles(renders, read_scene_file(outcome.scene), plan, note)
-        command += arguments(study, scene.wardmis, outcome)
-        _converge(command, outcome, note)
+        try:
+            if cycles:
+                plan, study = divide(study, cycles_seeds, cycles_reference_spp, as_is)
+                own = [*command, *arguments(study, scene.wardmis, outcome)]
+                if study.budget_seconds is None:
+                    _check([*own, "--check"], outcome)
+                else:  # which finds out how many samples there are to be
+                    _converge(own, outcome, note)
+                renders = outcome.folder / CYCLES_FOLDER
+                outcome.manifest = render_cycles(renders, read_scene_file(outcome.scene), plan, note)
+            _converge([*command, *arguments(study, scene.wardmis, outcome)], outcome, note)
+        except interrupt.Stopped:
+            raise
+        except RuntimeError as error:
+            if new:
+                _forget(outcome)
+            raise RuntimeError(explain_half(str(error)) if cycles else str(error)) from error
         return outcome
 
 
@@ -158,15 +170,21 @@ def divide(
             f"WardMIS: {seeds} seeds of Cycles cannot tell how sure a figure is; take at least {FEWEST_SEEDS}"
         )
     half = None if study.budget_seconds is None else study.budget_seconds / 2
+    first = study.first_seed
     plan = CyclesPlan(
-        list(range(study.first_seed, study.first_seed + seeds)),
-        study.checkpoints,
-        cycles_reference_spp or REFERENCE_FACTOR * study.max_spp,
-        as_is,
-        study.threads,
-        half,
+        list(range(first, first + seeds)), study.max_spp, cycles_reference_spp, as_is, study.threads, half
     )
     return plan, dataclasses.replace(study, budget_seconds=half)
+
+
+def _forget(outcome: Outcome) -> None:
+    """Of a comparison that was refused, and has rendered nothing, nothing stays."""
+    if any((outcome.folder / name).exists() for name in RENDERED):
+        return
+    outcome.scene.unlink(missing_ok=True)
+    for folder in (outcome.folder / CYCLES_FOLDER, outcome.folder):
+        with contextlib.suppress(OSError):
+            folder.rmdir()
 
 
 def scene_title(scene: Any) -> str:
@@ -216,5 +234,8 @@ def _run(command: list[str], outcome: Outcome, note: Progress) -> str:
 
 def _note(event: dict[str, Any], outcome: Outcome, tell: Progress) -> None:
     if event.get("event") == "warning":
-        outcome.warnings.append(str(event.get("message")))
+        message = str(event.get("message"))
+        if message in outcome.warnings:  # the renderer is asked twice where there is a budget
+            return
+        outcome.warnings.append(message)
     tell(event)
