@@ -250,11 +250,12 @@ class Reporter {
     };
     const std::optional<Interval> bySeconds = against(false), bySamples = against(true);
     if (!bySeconds) return {};
-    const bool independent =
-        !m.configuration->external && m.configuration->settings.sampler == SamplerType::kIndependent;
-    const bool allocated = !m.configuration->external && needsMoments(m.configuration->settings.allocation);
-    const SlopeVerdict v =
-        judgeSlope(*bySeconds, bySamples, m.seeds.biased(), m.seeds.tail.heavy(), independent, allocated);
+    SlopeFacts facts{.biased = m.seeds.biased(), .heavy = m.seeds.tail.heavy()};
+    const RenderSettings& settings = m.configuration->settings;
+    facts.independent = !m.configuration->external && settings.sampler == SamplerType::kIndependent;
+    facts.pilot = !m.configuration->external && needsMoments(settings.allocation);
+    facts.pilotApart = facts.pilot && pilotApart(settings) > 0;
+    const SlopeVerdict v = judgeSlope(*bySeconds, bySamples, facts);
     return {{"value", bySeconds->value},
             {"low", bySeconds->low},
             {"high", bySeconds->high},

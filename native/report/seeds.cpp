@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kRounding = 1e-6;  // of a value: images are floats, and renderers add up in floats
 constexpr double kUnsureSlope = 1;  // width of an interval that says nothing
+constexpr double kByTime = 0.5;     // a slope so much nearer to -1 against samples is one of the time
 
 size_t blocksAcross(int pixels) { return static_cast<size_t>((pixels + kBlock - 1) / kBlock); }
 
@@ -193,32 +194,39 @@ BiasTest compareConverged(const Reference& a, const Reference& b) {
   return test;
 }
 
-SlopeVerdict judgeSlope(const Interval& s, const std::optional<Interval>& bySamples, bool biased, bool heavy,
-                        bool independent, bool allocated) {
+SlopeVerdict judgeSlope(const Interval& s, const std::optional<Interval>& bySamples, const SlopeFacts& facts) {
   const std::string found = fmt::format("{:.2f} [{:.2f}, {:.2f}]", s.value, s.low, s.high);
   if (s.high - s.low > kUnsureSlope) return {"none", "none", found + ": too unsure to say anything"};
   if (s.contains(-1)) return {"none", "none", found + ": as Monte Carlo estimates without bias have it"};
+  const bool pilotInImage = facts.pilot && !facts.pilotApart;
   if (s.high < -1) {
-    if (bySamples && bySamples->contains(-1))
+    if (bySamples && std::abs(bySamples->value + 1) < kByTime * std::abs(s.value + 1))
       return {"steeper", "overhead",
-              found + ": steeper against time than against samples, since the pilot's time is spread over ever more"};
-    if (!independent)
+              found + ": steeper against time than against samples, since " +
+                  (facts.pilot ? "the pilot's time is spread over ever more"
+                               : "the first samples take longer than those that follow")};
+    if (!facts.independent)
       return {"steeper", "sampler",
               found + ": steeper, since the sampler's points are spread evenly" +
-                  (allocated ? " (and since the pilot, with other counts, is an ever smaller part)" : "")};
-    if (allocated)
+                  (pilotInImage ? " (and since the pilot, with other counts, is an ever smaller part)" : "")};
+    if (pilotInImage)
       return {"steeper", "allocation",
               found + ": steeper, since the pilot, with other counts and time of its own, is an ever smaller part"};
     return {"steeper", "unclear", found + ": steeper than independent samples should be, and the cause is not found"};
   }
-  if (biased && heavy)
+  if (facts.biased && facts.heavy)
     return {"shallower", "both",
             found + ": shallower; the mean of the seeds is not the reference's, and few samples carry the error"};
-  if (biased)
+  if (facts.biased)
     return {"shallower", "bias", found + ": shallower, and the mean of the seeds is not the reference's: it is biased"};
-  if (heavy)
+  if (facts.heavy)
     return {"shallower", "heavy tail",
             found + ": shallower without a sign of bias: rare large samples carry the error (a heavy tail)"};
+  if (pilotInImage && bySamples && bySamples->low > -1)
+    return {"shallower", "allocation",
+            found +
+                ": shallower, with no sign of bias or of a heavy tail: the samples of the pilot, an ever smaller "
+                "part, do better than those that are shared out after it"};
   return {"shallower", "unclear", found + ": shallower, with no sign of bias or of a heavy tail"};
 }
 

@@ -67,9 +67,14 @@ struct SlopeVerdict {
   const char* cause = "none";  // none, bias, heavy tail, both, sampler, overhead, allocation, unclear
   std::string text;
 };
-// bySamples: the slope against samples instead of seconds; independent: the sampler's points are;
-// allocated: by a pilot of equal counts.
-SlopeVerdict judgeSlope(const Interval& slope, const std::optional<Interval>& bySamples, bool biased, bool heavy,
-                        bool independent, bool allocated);
+// What is known of the configuration whose slope it is.
+struct SlopeFacts {
+  bool biased = false, heavy = false;
+  bool independent = true;  // the sampler's points are
+  bool pilot = false;       // allocated after a pilot of equal counts,
+  bool pilotApart = false;  // whose samples are no part of the image
+};
+// bySamples: the slope against samples instead of seconds.
+SlopeVerdict judgeSlope(const Interval& slope, const std::optional<Interval>& bySamples, const SlopeFacts& facts);
 
 }  // namespace wardmis

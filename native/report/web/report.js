@@ -418,7 +418,7 @@
     return h("div", {}, h("h4", {}, title), place);
   }
 
-  const metricLabel = (name) => (report.metrics.find((m) => m.name === name) || { label: name }).label;
+  const metricLabel = (name) => (report.metrics.find((m) => m.name === name) || { label: name }).label.replace(" %", "\u00a0%");
 
   function targetSection() {
     const with_ = configurations.filter((c) => c.time_to_target || c.efficiency);
@@ -470,7 +470,7 @@
     // where the metric leaves pixels out, the same with all of them
     const all = configurations.filter((c) => c.all_pixels);
     const whole = all.length ? h("div", {}, h("h3", {}, "With all pixels"),
-      read(`The same by relMSE, of which the largest 0.1 % of the pixels are a part: the time to ${brief(all[0].all_pixels.time_to_target.target)}, and the errors at equal time and equal samples, as ratios to those of ${baseline.name}. The rare large samples make these intervals wide, and rough.`),
+      read(`The same by relMSE, with the largest 0.1 % of the pixels in it: the time to ${brief(all[0].all_pixels.time_to_target.target)}, and the errors at equal time and equal samples, as ratios to those of ${baseline.name}. The rare large samples make these intervals wide, and rough.`),
       table("with all pixels", [["Configuration"], ["Seconds to target", "number"], ["Ratio of times", "number"], ["At equal time", "number"], ["At equal samples", "number"], ["Variance × CPU seconds, ratio", "number"]],
         all.map((c) => {
           const a = c.all_pixels, of = (part) => (c === baseline ? kNone : part ? ratio(part.ratio) : kNone);

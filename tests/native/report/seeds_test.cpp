@@ -152,20 +152,30 @@ TEST(Seeds, RoundingIsNoBias) {
 }
 
 TEST(Seeds, SlopesAreJudged) {
-  const auto cause = [](double low, double high, bool biased, bool heavy, bool independent,
-                        std::optional<Interval> bySamples = {}, bool allocated = false) {
-    return std::string(
-        judgeSlope({(low + high) / 2, low, high}, bySamples, biased, heavy, independent, allocated).cause);
+  const auto judge = [](double low, double high, const SlopeFacts& facts, std::optional<Interval> bySamples = {}) {
+    return judgeSlope({(low + high) / 2, low, high}, bySamples, facts);
   };
-  EXPECT_EQ(cause(-1.05, -0.97, true, true, true), "none");
-  EXPECT_EQ(cause(-0.9, -0.8, true, false, true), "bias");
-  EXPECT_EQ(cause(-0.9, -0.8, false, true, true), "heavy tail");
-  EXPECT_EQ(cause(-0.9, -0.8, true, true, true), "both");
-  EXPECT_EQ(cause(-0.9, -0.8, false, false, true), "unclear");
-  EXPECT_EQ(cause(-1.4, -1.2, false, false, false), "sampler");
-  EXPECT_EQ(cause(-1.4, -1.2, false, false, true), "unclear");
-  EXPECT_EQ(cause(-1.4, -1.2, false, false, true, Interval{-1, -1.1, -0.9}), "overhead");
-  EXPECT_EQ(cause(-1.4, -1.2, false, false, true, {}, true), "allocation");
+  const auto cause = [&](auto... arguments) { return std::string(judge(arguments...).cause); };
+  EXPECT_EQ(cause(-1.05, -0.97, SlopeFacts{.biased = true, .heavy = true}), "none");
+  EXPECT_EQ(cause(-0.9, -0.8, SlopeFacts{.biased = true}), "bias");
+  EXPECT_EQ(cause(-0.9, -0.8, SlopeFacts{.heavy = true}), "heavy tail");
+  EXPECT_EQ(cause(-0.9, -0.8, SlopeFacts{.biased = true, .heavy = true}), "both");
+  EXPECT_EQ(cause(-0.9, -0.8, SlopeFacts{}), "unclear");
+  EXPECT_EQ(cause(-1.4, -1.2, SlopeFacts{.independent = false}), "sampler");
+  EXPECT_EQ(cause(-1.4, -1.2, SlopeFacts{}), "unclear");
+  // the pilot's equal counts do better than what is shared out after it, or worse
+  const SlopeFacts pilot{.pilot = true}, apart{.pilot = true, .pilotApart = true};
+  EXPECT_EQ(cause(-1.4, -1.2, pilot), "allocation");
+  EXPECT_EQ(cause(-0.9, -0.8, pilot, Interval{-0.85, -0.9, -0.8}), "allocation");
+  EXPECT_EQ(cause(-0.9, -0.8, pilot, Interval{-1, -1.1, -0.9}), "unclear") << "it is the time";
+  EXPECT_EQ(cause(-0.9, -0.8, apart, Interval{-0.85, -0.9, -0.8}), "unclear") << "it is not in the image";
+  EXPECT_EQ(cause(-1.4, -1.2, apart), "unclear");
+  // time that does not grow with the samples
+  const Interval nearly{-1.02, -1.03, -1.01};
+  EXPECT_EQ(cause(-1.4, -1.2, apart, nearly), "overhead");
+  EXPECT_NE(judge(-1.4, -1.2, apart, nearly).text.find("pilot"), std::string::npos);
+  EXPECT_EQ(cause(-1.4, -1.2, SlopeFacts{}, nearly), "overhead");
+  EXPECT_EQ(judge(-1.4, -1.2, SlopeFacts{}, nearly).text.find("pilot"), std::string::npos) << "there is none";
 }
 
 }  // namespace
