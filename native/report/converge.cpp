@@ -254,7 +254,8 @@ class Study {
         const FilmBuffer film = render(built_, s, st, watch);
         seconds = (st.pilotSeconds + st.renderSeconds) / std::max(1u, film.samples);
       }
-      sum += seconds;
+      // whose runs render each checkpoint anew: 1 + 2 + ... + n samples
+      sum += c.settings.sampler == SamplerType::kStratified ? 2 * seconds : seconds;
     }
     return std::max(sum / double(experiment_.configurations.size()), 1e-9);
   }

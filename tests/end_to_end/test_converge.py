@@ -248,6 +248,10 @@ class Converge(CommandTest):
         _, report = self.study("--budget-seconds", 6, "--seeds", 4, "-c", "equal", "-c", "auto")
         self.assertLess(time.monotonic() - start, 9)
         self.assertGreaterEqual(report["checkpoints"][-1], 4)
+        start = time.monotonic()  # of strata each checkpoint is a render of its own
+        strata = ("-c", "equal", "--sampler", "stratified")
+        self.study("--budget-seconds", 6, "--seeds", 4, *strata, folder="strata")
+        self.assertLess(time.monotonic() - start, 9)
         self.refused(
             2, "converge", self.scene(), "-o", self.folder / "poor", "--budget-seconds", "0.2", says=("give at least",)
         )
