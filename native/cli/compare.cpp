@@ -28,8 +28,7 @@ Verb addCompare(CLI::App& app) {
   app.add_option("--layer", o->layer, "layer of multi-layer files (default: the first with a Combined pass)");
   app.add_option("--difference", o->difference,
                  "write the relative error |x - r| / (r + 0.01) as an image: the values as .exr, or false colours with "
-                 "their scale as .png, .jpg ... (needs OpenImageIO)")
-      ->check(named());
+                 "their scale as .png, .jpg ... (needs OpenImageIO)");
   app.add_option("--scale", o->scale, "relative error shown in the brightest colour")
       ->check(between(1e-9, 1e9))
       ->capture_default_str();

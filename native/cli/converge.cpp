@@ -145,9 +145,7 @@ int run(const Options& o, const std::string& command) {
 Verb addConverge(CLI::App& app) {
   auto o = std::make_shared<Options>();
   app.add_option("SCENE", o->scene, "a .glb or .gltf file")->required();
-  app.add_option("-o,--output", o->folder, "the folder of the study: a new one, or one to go on with")
-      ->required()
-      ->check(named());
+  app.add_option("-o,--output", o->folder, "the folder of the study: a new one, or one to go on with")->required();
   app.add_option("-c,--configuration", o->specs,
                  "an allocation, or NAME:key=value,key=value with the options below without dashes; repeat it for each")
       ->take_all()
@@ -166,8 +164,7 @@ Verb addConverge(CLI::App& app) {
       ->excludes(spp);
   auto* reference =
       app.add_option("--reference", o->reference,
-                     "an image to hold the runs against (default: one is rendered, 16 times a run's samples)")
-          ->check(named());
+                     "an image to hold the runs against (default: one is rendered, 16 times a run's samples)");
   app.add_option("--reference-time", o->referenceTime, "seconds for the reference")
       ->check(between(0.01, 1e8))
       ->excludes(reference);

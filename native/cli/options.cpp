@@ -35,9 +35,8 @@ CLI::Validator notEmpty() {
   return {check, ""};
 }
 
-CLI::Validator named(size_t longest) {
+CLI::Validator notLonger(size_t longest) {
   const auto check = [=](const std::string& text) {
-    if (text.empty()) return std::string("is empty; give a name");
     return text.size() <= longest ? "" : fmt::format("has {} bytes; at most {} can be used", text.size(), longest);
   };
   return {check, ""};

@@ -16,7 +16,7 @@ CLI::Validator wholeNumber();
 // Anything but nothing, for every option that has a value.
 CLI::Validator notEmpty();
 
-// A name or path of at least one and at most `longest` bytes.
-CLI::Validator named(size_t longest = SIZE_MAX);
+// At most `longest` bytes.
+CLI::Validator notLonger(size_t longest);
 
 }  // namespace wardmis

@@ -252,7 +252,7 @@ int run(Options& o) {
 Verb addRender(CLI::App& app) {
   auto o = std::make_shared<Options>();
   app.add_option("SCENE", o->scene, "a .glb or .gltf file")->required();
-  app.add_option("-o,--output", o->output, "the EXR to write")->required()->check(named());
+  app.add_option("-o,--output", o->output, "the EXR to write")->required();
   o->settings.add(app);
   auto* spp =
       app.add_option("--spp", o->spp, "camera samples per pixel, the pilot's included if it is part of the image")
@@ -268,14 +268,14 @@ Verb addRender(CLI::App& app) {
       ->capture_default_str();
   app.add_option("--resolution", o->resolution, "WIDTHxHEIGHT instead of the scene's");
   app.add_option("--layer", o->layer, "first part of the EXR's channel names")
-      ->check(named(kLongestLayer))
+      ->check(notLonger(kLongestLayer))
       ->capture_default_str();
   app.add_option("--passes", o->passes, "of combined,depth,normal,albedo,variance,allocation (default: all)");
-  app.add_option("--stats", o->stats, "write statistics to this JSON file")->check(named());
+  app.add_option("--stats", o->stats, "write statistics to this JSON file");
   app.add_option("--progress", o->progress, "bar, json or none")
       ->check(CLI::IsMember({"auto", "bar", "json", "none"}))
       ->capture_default_str();
-  app.add_option("--preview", o->preview, "rewrite this EXR with the image so far")->check(named());
+  app.add_option("--preview", o->preview, "rewrite this EXR with the image so far");
   app.add_option("--preview-interval", o->previewInterval, "seconds between previews")
       ->check(between(0, 1e6))
       ->capture_default_str();

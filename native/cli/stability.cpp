@@ -57,8 +57,7 @@ Verb addStability(CLI::App& app) {
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   app.add_flag("--json", o->json, "everything that was measured, as one object");
-  app.add_option("--plot", o->plot, "draw heat maps over alpha and theta_o, as .svg or .png (needs gnuplot)")
-      ->check(named());
+  app.add_option("--plot", o->plot, "draw heat maps over alpha and theta_o, as .svg or .png (needs gnuplot)");
   return [o] { return run(*o); };
 }
 

@@ -215,10 +215,9 @@ Verb addStudy(CLI::App& app) {
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   app.add_flag("--json", o->json, "one object with the keys input, expect (as in tests/golden) and measured");
-  app.add_option("--csv", o->csv, "write a line for each strategy and number of samples")->check(named());
+  app.add_option("--csv", o->csv, "write a line for each strategy and number of samples");
   app.add_option("--plot", o->plot,
-                 "draw variance against samples and error against time, as .svg or .png (needs gnuplot)")
-      ->check(named());
+                 "draw variance against samples and error against time, as .svg or .png (needs gnuplot)");
   app.add_flag(
       "--paper", o->paper,
       "instead: how far the paper's printed formulas are off, and when its ranking of the allocations is true; with "

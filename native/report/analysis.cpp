@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "report/gallery.h"
 #include "report/measured.h"
@@ -144,11 +145,19 @@ class Reporter {
                              [](const Measured& m) { return wallSpread(m) > kScatteredWall; });
     clock_ = scattered_ && cpuKnown ? &Clocks::cpu : &Clocks::wall;
     time_ = 1e300;
-    for (const Measured& m : measured_)
+    for (const Measured& m : measured_) {
+      if (isShort(m)) continue;
       for (const Run& run : *m.runs)
         time_ = std::min(time_, run.checkpoints.back().time.*clock_);  // within every curve
+    }
     goal_ = goalOf(heavy ? &Metrics::relMseTrimmed : &Metrics::relMse);
     if (heavy) allPixels_ = goalOf(&Metrics::relMse);
+  }
+
+  // Another renderer, whose half of a budget ended earlier, decides on nothing.
+  bool isShort(const Measured& m) const {
+    return m.configuration->external &&
+           m.runs->front().checkpoints.back().spp < base_->runs->front().checkpoints.back().spp;
   }
 
   // An error that all surely reach, late on their curves, when the pilot is long over, and clear of the reference's
@@ -157,7 +166,7 @@ class Reporter {
     const MetricInfo& metric = metricOf(value);
     double target = 0;
     for (const Measured& m : measured_) {
-      if (m.seeds.biased() && &m != base_) continue;  // it may have a limit of its own
+      if (isShort(m) || (m.seeds.biased() && &m != base_)) continue;  // it may have a limit of its own
       const Curves curves(m, metric, clock_);
       const auto last = Bootstrap(curves.seeds()).interval([&](std::span<const uint32_t> draw) {
         return std::optional(curves.mean(draw, curves.checkpoints() - 1).error.back());
@@ -250,7 +259,7 @@ class Reporter {
     };
     const std::optional<Interval> bySeconds = against(false), bySamples = against(true);
     if (!bySeconds) return {};
-    SlopeFacts facts{.biased = m.seeds.biased(), .heavy = m.seeds.tail.heavy()};
+    SlopeFacts facts{.biased = m.seeds.biased(), .heavy = m.seeds.tail.heavy(), .unclear = m.seeds.unclear()};
     const RenderSettings& settings = m.configuration->settings;
     facts.independent = !m.configuration->external && settings.sampler == SamplerType::kIndependent;
     facts.pilot = !m.configuration->external && needsMoments(settings.allocation);
@@ -272,13 +281,17 @@ class Reporter {
     std::string text = fmt::format(
         "{} of {} blocks of {} × {} pixels differ from the reference (p < {:.2g}); the whole image: z = {:.2f}",
         b.failed, b.blocks, kBlock, kBlock, b.threshold, b.imageZ);
-    if (b.unmet > 0 || b.imageUnmet)
+    const auto unmet = [&](const std::string& what) {
       text += fmt::format(
-          "; {} not beyond what so few samples of the reference would be off: rare light that these seeds may not have "
-          "met (more of them would tell)",
-          b.unmet == 0          ? "the whole image is"
-          : b.unmet == b.failed ? (b.failed == 1 ? "that block is" : "those blocks are")
-                                : fmt::format("{} of those blocks {}", b.unmet, b.unmet == 1 ? "is" : "are"));
+          "; {} no darker than so few samples of the reference could be: rare light that these seeds may not have met "
+          "(more of them would tell)",
+          what);
+    };
+    if (b.unmet > 0)
+      unmet(b.unmet < b.failed ? fmt::format("{} of them {}", b.unmet, b.unmet == 1 ? "is" : "are")
+            : b.failed == 1    ? "that block is"
+                               : "those blocks are");
+    if (b.imageUnmet) unmet("the whole image is");
     if (heavy && b.failed > b.unmet) text += "; the tail is heavy, so that the whole image alone counts";
     if (m.runs->size() < kFewestTested) text += "; too few seeds for a test that would find much";
     if (!known) text += "; the reference's own noise is not known and counts as bias";
@@ -314,12 +327,15 @@ class Reporter {
     const std::optional<Interval> seconds =
         Bootstrap(m.runs->size()).interval([&](std::span<const uint32_t> draw) { return time(m, draw); });
     const std::optional<Interval> ratio = ratioToBase(m, time);
-    const bool isBase = &m == base_;
+    std::vector<uint32_t> all(m.runs->size());
+    std::iota(all.begin(), all.end(), 0u);
+    const char* none = curvesOf(m, goal).mean(all).error.front() < goal.target ? "under from the start" : "not reached";
     return {{"target", goal.target},
             {"seconds", toJson(seconds)},
             {"ratio", toJson(ratio)},
-            {"verdict", isBase            ? (seconds ? "baseline" : "not reached")
-                        : !ratio          ? "not reached"
+            {"verdict", !seconds          ? none
+                        : &m == base_     ? "baseline"
+                        : !ratio          ? "not compared"
                         : ratio->high < 1 ? "faster"
                         : ratio->low > 1  ? "slower"
                                           : "tie"}};
@@ -358,7 +374,7 @@ class Reporter {
       double variance = 0, cpu = 0;
       for (const uint32_t i : draw) variance += spreadOf(x, i, *goal.metric), cpu += x.cpu(i);
       const double n = double(draw.size());
-      return variance / n * (cpu / n);
+      return variance >= 0 ? std::optional(variance / n * (cpu / n)) : std::nullopt;  // less the floor nothing is left
     };
     const Bootstrap bootstrap(m.runs->size());
     const auto own = bootstrap.interval([&](std::span<const uint32_t> draw) { return product(m, draw); });
@@ -367,7 +383,7 @@ class Reporter {
       for (const uint32_t i : draw)
         variance += spreadOf(m, i, *goal.metric), rays += double((*m.runs)[i].checkpoints.back().rays);
       const double n = double(draw.size());
-      return rays > 0 ? std::optional(variance / n * (rays / n)) : std::nullopt;
+      return rays > 0 && variance >= 0 ? std::optional(variance / n * (rays / n)) : std::nullopt;
     });
     return {{"variance_x_seconds", toJson(own)},
             {"variance_x_rays", toJson(byRays)},
@@ -650,14 +666,19 @@ class Reporter {
       if (m.configuration->common && own.known() && other.known() && m.runs->size() >= kFewestTested) {
         const BiasTest test = compareConverged(other, own);
         const bool agree = !test.biased() && !m.seeds.biased() && !m.seeds.bias.biased();
-        j["agree"] = agree;
+        const bool unclear = agree && m.seeds.unclear();
+        if (!unclear) j["agree"] = agree;
         const std::string tests = fmt::format(
             "of {} blocks of {} × {} pixels {} differ between the converged images (image z {:.1f}), and {} between "
             "its runs "
             "and the reference (image z {:.1f})",
             test.blocks, kBlock, kBlock, test.failed, test.imageZ, m.seeds.bias.failed, m.seeds.bias.imageZ);
         j["text"] =
-            agree
+            unclear ? fmt::format(
+                          "{} and WardMIS have the same integrand here and share one reference; whether its runs "
+                          "agree with it, more seeds would tell: {}.",
+                          name, tests)
+            : agree
                 ? fmt::format(
                       "{} and WardMIS have the same integrand here, share one reference, and agree with it: {}.", name,
                       tests)

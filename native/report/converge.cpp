@@ -38,9 +38,13 @@ constexpr double kReferenceShare = 0.25;         // of a budget
 constexpr uint32_t kSurveySamples = 16;
 constexpr const char* kLayer = "ViewLayer";
 
+void requireFile(const fs::path& path) {
+  if (!fs::is_regular_file(path)) throw Error(ExitCode::kFile, path.string() + ": is no file", "remove it");
+}
+
 // An object.
 json readJson(const fs::path& path) {
-  if (!fs::is_regular_file(path)) throw Error(ExitCode::kFile, path.string() + ": is no file", "remove it");
+  requireFile(path);
   std::ifstream in(path);
   try {
     json j = json::parse(in);
@@ -323,7 +327,7 @@ class Study {
     r.setVariance(std::move(variance));
     if (!settings.is_object() || settings.value("sampler", "independent") == "independent") return;
     r.mseFloor = r.relMseFloor = r.trimmedFloor =
-        0;  // an upper bound is not what may be subtracted; for the test of bias it is careful
+        0;  // an upper bound is not what may be subtracted; the test of bias is the more careful for it
     if (observer_.warn)
       observer_.warn(
           fmt::format("{} was rendered with evenly spread points, for which its Variance pass is an upper bound: "
@@ -350,6 +354,7 @@ class Study {
   // An image that an earlier start has left, of the study's size and with a Combined pass: nothing, if it is not whole.
   std::optional<ExrImage> whole(const fs::path& path) const {
     if (!fs::exists(path)) return {};
+    requireFile(path);
     try {
       ExrImage image = readExr(path);
       if (image.width == experiment_.width && image.height == experiment_.height) {
@@ -465,7 +470,7 @@ class Study {
       if (observer_.warn) observer_.warn(which.string() + " is damaged; the run is done again");
       return {};
     };
-    if (!fs::is_regular_file(file)) throw Error(ExitCode::kFile, file.string() + ": is no file", "remove it");
+    requireFile(file);
     try {
       std::ifstream in(file);
       Run run = runFromJson(json::parse(in));
@@ -478,6 +483,8 @@ class Study {
       run.image = image;
       return run;
     } catch (const json::exception&) {
+      return damaged(file);
+    } catch (const std::domain_error&) {
       return damaged(file);
     }
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <stdexcept>
 
 #include "film/exr.h"
 #include "math/error.h"
@@ -62,7 +63,7 @@ namespace {
 // A time or an error.
 double measured(const json& j) {
   const double x = j;
-  if (!(x >= 0 && std::isfinite(x))) throw json::other_error::create(501, "a negative time or error", &j);
+  if (!(x >= 0 && std::isfinite(x))) throw std::domain_error("a negative time or error");
   return x;
 }
 
@@ -71,9 +72,9 @@ double measured(const json& j) {
 Run runFromJson(const json& j) {
   Run run;
   run.seed = j.at("seed");
-  run.pilotSeconds = j.at("pilot_seconds");
-  if (!j.at("flip").is_null()) run.flip = j.at("flip").get<double>();
-  run.calibration = j.at("calibration_seconds"), run.load = j.at("load");
+  run.pilotSeconds = measured(j.at("pilot_seconds"));
+  if (!j.at("flip").is_null()) run.flip = measured(j.at("flip"));
+  run.calibration = measured(j.at("calibration_seconds")), run.load = measured(j.at("load"));
   j.at("samples").get_to(run.counts.samples);
   const auto rays = j.at("rays").get<std::array<uint64_t, 4>>();
   run.counts.cameraRays = rays[0], run.counts.lobeRays = rays[1];

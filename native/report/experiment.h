@@ -50,7 +50,7 @@ struct Run {
 
 // What images converge to.
 struct Reference {
-  std::string estimates;  // which light: "path, depth 8"
+  std::string estimates;  // which light: "paths, depth 8"
   std::filesystem::path path;
   bool made = false;  // by us, else given
   RgbImage image;
@@ -86,7 +86,7 @@ struct Experiment {
 };
 
 nlohmann::json toJson(const Run& run);
-Run runFromJson(const nlohmann::json& j);  // throws nlohmann::json::exception
+Run runFromJson(const nlohmann::json& j);  // throws nlohmann::json::exception, std::domain_error
 
 // A configuration's name as a folder's.
 std::string folderName(const std::string& name);

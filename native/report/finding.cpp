@@ -42,7 +42,7 @@ std::string withAllPixels(const json& r) {
     target = number(t["target"]);
     if (t["ratio"].is_object())
       times.push_back(fmt::format("{} {}", name, interval(t["ratio"])));
-    else
+    else if (t["verdict"] == "not reached")
       unsure.push_back(name);
     if (e.is_object() && e["ratio"].is_object()) errors.push_back(fmt::format("{} {}", name, interval(e["ratio"])));
   }
@@ -50,8 +50,7 @@ std::string withAllPixels(const json& r) {
   if (!times.empty())
     text = fmt::format("a relMSE of {} is reached in these shares of the time of {}: {}", target, base, list(times));
   if (!unsure.empty())
-    text += fmt::format("{}it cannot be said when {} reach{} a relMSE of {}", text.empty() ? "" : "; ", list(unsure),
-                        unsure.size() == 1 ? "es" : "", target);
+    text += fmt::format("{}a relMSE of {} is not surely reached by {}", text.empty() ? "" : "; ", target, list(unsure));
   if (!errors.empty())
     text += fmt::format("{}errors at equal samples are {} of that of {}", text.empty() ? "" : "; ", list(errors), base);
   return text.empty() ? "" : fmt::format("With all pixels, {}.", text);
@@ -61,10 +60,14 @@ std::string withAllPixels(const json& r) {
 std::vector<std::string> otherLight(const json& r) {
   json base;
   std::map<std::string, std::vector<std::string>> others;
+  bool apart = false;
   for (const json& c : r["configurations"])
     if (c["name"] == r["baseline"]) base = c;
   for (const json& c : r["configurations"])
-    if (c["estimates"].is_string() && c["estimates"] != base["estimates"]) others[c["estimates"]].push_back(c["name"]);
+    if (c["estimates"].is_string() && c["estimates"] != base["estimates"]) {
+      others[c["estimates"]].push_back(c["name"]);
+      apart = c["reference"] != base["reference"];
+    }
   std::vector<std::string> said;
   said.reserve(others.size());
   for (const auto& [light, names] : others)
@@ -72,8 +75,7 @@ std::vector<std::string> otherLight(const json& r) {
         "{} estimate{} {}, {} {}: these are images of different light, {}, and neither is better for being sooner.",
         list(names), names.size() == 1 ? "s" : "", light, r["baseline"].get<std::string>(),
         base["estimates"].get<std::string>(),
-        r["references"].size() > 1 ? "each held against its own reference"
-                                   : "although both are held against the one reference given"));
+        apart ? "each held against its own reference" : "although both are held against the one reference given"));
   return said;
 }
 
@@ -84,25 +86,28 @@ std::vector<std::string> finding(const json& r) {
   const std::string base = r["baseline"];
   const std::string metric = r["metric"] == "relmse" ? "relMSE" : "relMSE without the largest 0.1 %";
   const char* key = r["metric"] == "relmse" ? "relmse" : "relmse_trimmed";
-  std::vector<std::string> slower, ties, unreached, biased, unclear, heavy;
+  std::vector<std::string> slower, ties, unreached, under, biased, unclear, heavy;
   std::vector<std::pair<double, std::string>> faster;  // by ratio
   double secondLow = 1;                                // lower end of the intervals of all but the best
   json best, baseline;
-  bool baseUnreached = false;
+  bool baseUnreached = false, baseUnder = false;
   std::string target;
   for (const json& c : r["configurations"]) {
     const std::string name = c["name"];
     if (c["bias"].is_object() && c["bias"]["verdict"] == "biased") biased.push_back(name);
-    if (c["bias"].is_object() && c["bias"]["verdict"] == "unclear") unclear.push_back(name);
+    // of a heavy tail more is said
+    if (c["bias"].is_object() && c["bias"]["verdict"] == "unclear" && c["tail"]["heavy"] != true)
+      unclear.push_back(name);
     if (c["tail"]["heavy"] == true) heavy.push_back(name);
     const json& t = c["time_to_target"];
     target = number(t["target"]);
     if (name == base) {
-      baseUnreached = t["seconds"].is_null(), baseline = c;
+      baseUnreached = t["verdict"] == "not reached", baseUnder = t["verdict"] == "under from the start", baseline = c;
       continue;
     }
-    if (t["verdict"] == "not reached") {
-      if (t["seconds"].is_null()) unreached.push_back(name);
+    if (t["ratio"].is_null()) {
+      if (t["verdict"] == "not reached") unreached.push_back(name);
+      if (t["verdict"] == "under from the start") under.push_back(name);
       continue;
     }
     const std::string text = fmt::format("{} {}", name, interval(t["ratio"]));
@@ -137,6 +142,9 @@ std::vector<std::string> finding(const json& r) {
                       title, metric, target, base, clock, seeds, list(texts)));
       if (faster.size() > 1 && best["time_to_target"]["ratio"]["high"] < secondLow)
         said.push_back(fmt::format("The fastest is {}.", best["name"].get<std::string>()));
+    } else if (baseUnder) {
+      said.push_back(fmt::format("On {}, {} is under a {} of {} from its first checkpoint on: no time can be compared.",
+                                 title, base, metric, target));
     } else if (baseUnreached) {
       said.push_back(fmt::format("On {}, {} itself does not surely reach a {} of {}: nothing can be compared with it.",
                                  title, base, metric, target));
@@ -147,6 +155,7 @@ std::vector<std::string> finding(const json& r) {
     }
     if (!ties.empty()) said.push_back(fmt::format("No difference from {} is found for {}.", base, list(ties)));
     if (!slower.empty()) said.push_back(fmt::format("Slower than {}: {}.", base, list(slower)));
+    if (!under.empty()) said.push_back(fmt::format("Under it from their first checkpoint on: {}.", list(under)));
     if (!unreached.empty() && !baseUnreached)
       said.push_back(fmt::format("That error is not surely reached by {}.", list(unreached)));
   } else {

@@ -19,8 +19,7 @@ inline constexpr double kHeavySeeds = 3;     // largest over median error of a s
 // z-tests of the mean over seeds against the reference: blocks, each by Student's t over the seeds, Sidak over all of
 // them; and the image as a whole.
 // Seeds that have all missed a rare light agree with each other, and are sure of too dark a block. The reference has
-// met it, and its variance says how much so few samples could be off: a difference that is not beyond that tells
-// nothing.
+// met it, and its variance says how dark so few samples could be: a block that is no darker tells nothing.
 struct BiasTest {
   size_t blocks = 0, failed = 0;
   size_t unmet = 0;         // of the failed: not beyond what so few of the reference's samples would be off
@@ -70,6 +69,7 @@ struct SlopeVerdict {
 // What is known of the configuration whose slope it is.
 struct SlopeFacts {
   bool biased = false, heavy = false;
+  bool unclear = false;     // whether it is biased
   bool independent = true;  // the sampler's points are
   bool pilot = false;       // allocated after a pilot of equal counts,
   bool pilotApart = false;  // whose samples are no part of the image

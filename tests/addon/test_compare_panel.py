@@ -9,6 +9,7 @@ import sys
 import time
 import types
 import unittest
+from dataclasses import replace
 from pathlib import Path
 from unittest import mock
 
@@ -21,6 +22,7 @@ from wardmis import scripting
 from wardmis.comparison import colours, images, job, operators, panels, plot, properties
 from wardmis.comparison.exr import read_pass
 from wardmis.comparison.report import VERDICTS, Report
+from wardmis.comparison.run import divide
 
 
 class PanelTest(ComparisonTest):
@@ -106,6 +108,17 @@ class Background(PanelTest):
         self.assertIn("Cycles", properties.report().image_names)
         manifest = json.loads((folder / "cycles" / "manifest.json").read_text())
         self.assertEqual(sorted({run["spp"] for run in manifest["runs"]}), [1, 2, 4])
+
+    def test_a_refused_budget_leaves_no_folder(self):
+        self.settings.use_cycles = True
+        self.settings.stop_by = "seconds"
+        with mock.patch.object(
+            operators, "divide", lambda study, *_: divide(replace(study, budget_seconds=0.002), 2, None, False)
+        ):
+            self.assertEqual(bpy.ops.wardmis.compare(), {"FINISHED"})
+            failed = self.wait()
+        self.assertIn("that is WardMIS' half of the budget: give twice as much", failed.failure)
+        self.assertFalse(failed.folder.exists())
 
     def test_cancel_ends_the_other_blender(self):
         self.settings.use_cycles = True

@@ -102,7 +102,7 @@ class Comparing(ComparisonTest):
             plan = cycles.CyclesPlan([1, 2], 64, budget_seconds=budget)
             manifest = Manifest(self.folder / "cycles" / "manifest.json", {"settings": {}, "renderer": ""})
             renders = cycles._Renders(self.scene, bpy.context.view_layer, manifest, plan, lambda _event: None)
-            renders.one_pixel_wall = [0.1]
+            renders._measure_synchronisation = lambda: 0.1
             with mock.patch.object(renders, "_timed", lambda spp, _seed: (0.1 + 0.01 * spp, 0.0)):
                 if samples is None:
                     with self.assertRaisesRegex(
@@ -122,6 +122,21 @@ class Comparing(ComparisonTest):
         with self.assertRaisesRegex(RuntimeError, "4 samples per pixel by Cycles .* keeps the report without it"):
             wardmis.compare(self.folder, budget_seconds=0.02, **SMALL)
         self.assertTrue((self.folder / "report.html").is_file())
+
+    def test_a_budget_of_nothing(self):
+        with self.assertRaisesRegex(RuntimeError, "a budget of -5 seconds is none"):
+            wardmis.compare(self.folder, budget_seconds=-5, **SMALL)
+        self.assertFalse(self.folder.exists())
+
+    def test_a_manifest_that_does_not_say_its_samples_goes_on_with_them(self):
+        wardmis.compare(self.folder, budget_seconds=60, **SMALL)
+        path = self.folder / "cycles" / "manifest.json"
+        old = self.manifest()
+        del old["max_spp"]
+        path.write_text(json.dumps(old))
+        with mock.patch.object(cycles._Renders, "_affordable", side_effect=AssertionError("it is decided")):
+            wardmis.compare(self.folder, budget_seconds=60, **{**SMALL, "seeds": 3})
+        self.assertEqual({run["spp"] for run in self.manifest()["runs"] if run["seed"] == 3}, {1, 2, 4})
 
     def test_one_process_at_a_time(self):
         (self.folder / "cycles").mkdir(parents=True)

@@ -96,21 +96,32 @@ class Compare(unittest.TestCase):
 
     def test_ended_by_force_it_leaves_no_blender_behind(self):
         """./dev compare becomes Blender, and what Blender has started ends with it."""
-        with tempfile.TemporaryDirectory() as folder:
-            out = Path(folder) / "study"
-            command = [ROOT / "dev", "compare", "blend/teapot.blend", "-o", out, "-c", "equal", "--resolution", "96x64"]
-            process = subprocess.Popen(command, cwd=ROOT, stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-            self.addCleanup(process.kill)
-            deadline = time.monotonic() + 120
-            while not list(out.glob("cycles/*.exr")):
-                self.assertLess(time.monotonic(), deadline)
-                self.assertIsNone(process.poll())
-                time.sleep(0.02)
-            process.kill()
-            process.wait()
-            time.sleep(0.5)
-            found = subprocess.run(["pgrep", "-f", str(out)], capture_output=True, text=True).stdout
-            self.assertEqual(found, "")
+        for rendering, *more in (("cycles/*.exr",), ("runs/*/*.exr", "--no-cycles", "--max-spp", "4096")):
+            with self.subTest(rendering), tempfile.TemporaryDirectory() as folder:
+                out = Path(folder) / "study"
+                command = [
+                    ROOT / "dev",
+                    "compare",
+                    "blend/teapot.blend",
+                    "-o",
+                    out,
+                    "-c",
+                    "equal",
+                    "--resolution",
+                    "96x64",
+                ]
+                process = subprocess.Popen([*command, *more, "--reference-time", "1"], cwd=ROOT, stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL)  # fmt: skip
+                self.addCleanup(process.kill)
+                deadline = time.monotonic() + 120
+                while not list(out.glob(rendering)):
+                    self.assertLess(time.monotonic(), deadline)
+                    self.assertIsNone(process.poll())
+                    time.sleep(0.02)
+                process.kill()
+                process.wait()
+                time.sleep(0.5)
+                found = subprocess.run(["pgrep", "-f", str(out)], capture_output=True, text=True).stdout
+                self.assertEqual(found, "")
 
     def test_by_the_script(self):
         """./dev compare, as it is documented."""

@@ -279,6 +279,9 @@ class Converge(CommandTest):
         done, report = self.quick("--reference", self.folder / "sobol.exr", folder="c")
         self.assertIsNone(report["reference"]["floor"]["relmse"])
         self.assertIn("upper bound", done.stderr)
+        direct = ("-c", "direct:allocation=equal,integrator=direct")
+        _, report = self.quick("--reference", self.folder / "reference.exr", *direct, folder="e")
+        self.assertIn("although both are held against the one reference given", " ".join(report["finding"]))
         self.render("--spp", "256", "--seed", "3", "--allocation", "equal", out=self.folder / "own.exr")
         self.refused(2, "converge", self.scene(), "-o", self.folder / "d", "--reference", self.folder / "own.exr", "--resolution", "48x32", says=("seed 3",))  # fmt: skip
 
@@ -300,6 +303,20 @@ class Converge(CommandTest):
         errors = [at["relmse"]["mean"] for at in self.of(report, "strata")["curve"]]
         self.assertEqual(errors, sorted(errors, reverse=True))
         self.assertIn("only 3 seeds", " ".join(report["finding"]))
+
+    def test_a_target_that_no_time_leads_to(self):
+        """Above all curves, and under them."""
+        _, report = self.quick("--target", 1e6)
+        for c in report["configurations"]:
+            self.assertEqual(c["time_to_target"]["verdict"], "under from the start")
+            self.assertIsNone(c["time_to_target"]["seconds"])
+        said = " ".join(report["finding"])
+        self.assertIn("equal is under a relMSE of 1e+06 from its first checkpoint on: no time can be compared", said)
+        self.assertIn("Under it from their first checkpoint on: second-moment", said)
+        self.assertNotIn("not surely reached", said)
+        _, report = self.quick("--target", 1e-12)
+        self.assertEqual({c["time_to_target"]["verdict"] for c in report["configurations"]}, {"not reached"})
+        self.assertIn("equal itself does not surely reach", report["finding"][0])
 
     def test_a_black_image_has_nothing_to_compare(self):
         scene = self.folder / "dark.glb"

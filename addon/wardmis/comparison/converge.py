@@ -68,7 +68,7 @@ def chosen_spp(folder: Path) -> int:
 
 def explain_half(message: str) -> str:
     """A refusal of half a budget names the half, where the user has given the whole."""
-    if "--budget-seconds" not in message:
+    if "--budget-seconds" not in message or "give at least" not in message:
         return message
     return f"{message}; that is WardMIS' half of the budget: give twice as much, or compare without Cycles"
 

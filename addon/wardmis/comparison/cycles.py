@@ -33,7 +33,7 @@ REFERENCE_SEED = 1_000_003
 CUT_OFF_SECONDS = 0.01  # Cycles states its time without what is below
 ONE_PIXEL_RENDERS = 3
 PROBE_SAMPLES = 8  # of the render that tells what a sample costs, where there is a budget
-FEWEST_SAMPLES = 4  # for which a budget must suffice, as WardMIS' own
+FEWEST_OF_BUDGET = 4  # samples for which a budget must suffice, as WardMIS' own
 BUDGET_SHARE = 0.9  # the rest is for what cannot be foreseen
 CERTAIN = 5  # a CPU time is stated where it is so many times as large as what the synchronisation varies by
 WITHOUT_DENOISER = (
@@ -58,14 +58,19 @@ class CyclesPlan:
         return self.reference_spp or REFERENCE_FACTOR * max_spp
 
 
-def render_cycles(folder: Path, scene_file: SceneFile, plan: CyclesPlan, progress: Progress) -> Path:
-    """Renders what `folder` does not hold yet; returns the manifest's path. Raises RuntimeError with a message for the user."""
-    scene, layer = bpy.context.scene, bpy.context.view_layer
+def require_cycles(scene: Any) -> None:
+    """Raises RuntimeError where there is none."""
     if not hasattr(scene, "cycles"):
         raise RuntimeError(
             "WardMIS: Cycles is not there to be compared with: its add-on is off; turn it on in Preferences > Add-ons > Cycles Render "
             "Engine, or compare without Cycles"
         )
+
+
+def render_cycles(folder: Path, scene_file: SceneFile, plan: CyclesPlan, progress: Progress) -> Path:
+    """Renders what `folder` does not hold yet; returns the manifest's path. Raises RuntimeError with a message for the user."""
+    scene, layer = bpy.context.scene, bpy.context.view_layer
+    require_cycles(scene)
     folder.mkdir(parents=True, exist_ok=True)
     settings = list(cycles_settings.frame(scene, layer, scene_file.film, plan.threads))
     lost = []  # of the settings that are to be kept
@@ -121,28 +126,23 @@ class _Renders:
         self.scene, self.layer = scene, layer
         self.manifest, self.plan, self.progress = manifest, plan, progress
         self.one_pixel_cpu: list[float] = []
-        self.one_pixel_wall: list[float] = []
         self.began = time.monotonic()
         self.work: list[tuple[str, int, int]] = []
         self.all = self.done = 0
 
-    def _is_to_afford(self) -> bool:
-        """Whether a budget has still to decide on the samples; once it has, the comparison goes on as it began."""
-        return self.plan.budget_seconds is not None and self.manifest.max_spp is None
-
     def _decide_samples(self) -> int:
         """Samples per pixel of the last checkpoint."""
         plan, manifest = self.plan, self.manifest
-        spp = plan.max_spp if plan.budget_seconds is None else manifest.max_spp
-        if spp is None:
-            assert plan.budget_seconds is not None
-            spp = self._affordable(plan.budget_seconds, chosen_spp(manifest.path.parent.parent))
+        spp = plan.max_spp
+        if plan.budget_seconds is not None:  # once it has decided, the comparison goes on as it began
+            spp = manifest.max_spp or self._affordable(plan.budget_seconds, chosen_spp(manifest.path.parent.parent))
         manifest.decide(spp, plan.reference_of(spp))
         return spp
 
     def _affordable(self, budget: float, most: int) -> int:
         """The largest number of samples whose renders fit into the budget."""
-        synchronisation = statistics.median(self.one_pixel_wall)
+        self.progress({"event": "progress", "phase": "Cycles' speed", "fraction": 0.0})
+        synchronisation = self._measure_synchronisation()
         wall, _ = self._timed(PROBE_SAMPLES, 0)
         sample = max(0.0, wall - synchronisation) / PROBE_SAMPLES
         spent = time.monotonic() - self.began
@@ -154,13 +154,13 @@ class _Renders:
             reference = synchronisation + self.plan.reference_of(spp) * sample
             return spent + len(self.plan.seeds) * run + REFERENCE_IMAGES * reference
 
-        possible = [spp for spp in checkpoints(most) if spp >= FEWEST_SAMPLES] or [most]
+        possible = [spp for spp in checkpoints(most) if spp >= FEWEST_OF_BUDGET] or [most]
         fitting = [spp for spp in possible if seconds(spp) <= BUDGET_SHARE * budget]
         if not fitting:
             raise RuntimeError(
                 f"WardMIS: {possible[0]} samples per pixel by Cycles take about {seconds(possible[0]):.0f} s here, with {len(self.plan.seeds)} "
                 f"seeds and the reference, and its half of the budget is {budget:.3g} s; give at least "
-                f"{2 * seconds(possible[0]) / BUDGET_SHARE:.0f} s in all, or fewer seeds of Cycles or a lower resolution; "
+                f"{2 * seconds(possible[0]) / BUDGET_SHARE:.0f} s in all, or fewer seeds of Cycles or a lower resolution, and another output folder; "
                 f"{place} keeps the report without it"
             )
         return fitting[-1]
@@ -179,8 +179,6 @@ class _Renders:
         )
 
     def run(self) -> None:
-        if self._is_to_afford():
-            self._measure_synchronisation()
         self.work = self._work_left(checkpoints(self._decide_samples()))
         self.all = sum(spp for _, _, spp in self.work)
         if not self.work:
@@ -219,7 +217,8 @@ class _Renders:
             }
         )
 
-    def _measure_synchronisation(self) -> None:
+    def _measure_synchronisation(self) -> float:
+        """Of the scene, with all that is not sampling: returns its wall seconds, and notes the CPU's."""
         render = self.scene.render
         width, height = (
             max(1, n * render.resolution_percentage // 100) for n in (render.resolution_x, render.resolution_y)
@@ -235,8 +234,8 @@ class _Renders:
         with overridden(pixel):
             # the first one reads images and loads kernels
             times = [self._timed(1, 0) for _ in range(1 + ONE_PIXEL_RENDERS)][1:]
-        self.one_pixel_wall = [wall for wall, _ in times]
         self.one_pixel_cpu = [cpu for _, cpu in times]
+        return statistics.median(wall for wall, _ in times)
 
     def _timed(self, spp: int, seed: int) -> tuple[float, float]:
         """Renders; returns the wall seconds that took, and the CPU seconds of this process."""

@@ -34,7 +34,12 @@ class Stage:
 
 class Job:
     def __init__(
-        self, folder: Path, stages: list[Stage], finished: Callable[[Job], None], temporary: list[Path]
+        self,
+        folder: Path,
+        stages: list[Stage],
+        finished: Callable[[Job], None],
+        temporary: list[Path],
+        failed: Callable[[], None] | None = None,
     ) -> None:
         """`finished` is called once all has ended well, or was stopped; `temporary` are files to be removed at the end."""
         self.folder = folder
@@ -45,6 +50,7 @@ class Job:
         self.running = True
         self._stages = stages
         self._finished = finished
+        self._failed = failed
         self._temporary = temporary
         self._process: Renderer | None = None
         self._explain: Callable[[str], str] = str
@@ -101,6 +107,8 @@ class Job:
     def _fail(self, message: str) -> None:
         self.failure = self._explain(message)
         self.stop()
+        if self._failed is not None:
+            self._failed()
 
     def cancel(self) -> None:
         """Asks the process to end with what it has; a second time ends it."""
@@ -139,11 +147,17 @@ def running() -> bool:
     return _job is not None and _job.running
 
 
-def start(folder: Path, stages: list[Stage], finished: Callable[[Job], None], temporary: list[Path]) -> Job:
+def start(
+    folder: Path,
+    stages: list[Stage],
+    finished: Callable[[Job], None],
+    temporary: list[Path],
+    failed: Callable[[], None] | None = None,
+) -> Job:
     global _job
     if running():
         raise RuntimeError("WardMIS: a comparison is running; wait for it, or cancel it")
-    _job = Job(folder, stages, finished, temporary)
+    _job = Job(folder, stages, finished, temporary, failed)
     if not bpy.app.timers.is_registered(_look):
         bpy.app.timers.register(_look, first_interval=LOOK_SECONDS, persistent=True)
     return _job

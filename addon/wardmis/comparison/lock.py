@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One process at a time in a folder, as the command has it for its own. No bpy in here."""
+"""One process at a time in a folder, where its file system has locks, as the command has it for its own. No bpy in here."""
 
 from __future__ import annotations
 
@@ -20,14 +20,18 @@ def alone(folder: Path) -> Iterator[None]:
     if fcntl is None:
         yield
         return
-    descriptor = os.open(folder, os.O_RDONLY)
+    descriptor = None
     try:
         try:
+            descriptor = os.open(folder, os.O_RDONLY)
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as error:
             raise RuntimeError(
                 f"WardMIS: another process is rendering into {folder}; wait for it, or choose another output folder"
             ) from error
+        except OSError:
+            pass  # there are none here
         yield
     finally:
-        os.close(descriptor)
+        if descriptor is not None:
+            os.close(descriptor)

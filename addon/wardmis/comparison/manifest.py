@@ -33,7 +33,8 @@ class Manifest:
                     "choose another output folder, or delete that one"
                 )
         self.data["runs"] = [run for run in old["runs"] if self._there(run["path"])]
-        self.data["max_spp"] = old.get("max_spp")
+        # earlier manifests do not say it
+        self.data["max_spp"] = old.get("max_spp", max((run["spp"] for run in self.data["runs"]), default=None))
         images = [name for name in old["reference"]["images"] if self._there(name)]
         self.data["reference"] = {"images": images, "spp": old["reference"]["spp"]}
 
@@ -85,6 +86,8 @@ def _read(path: Path) -> dict[str, Any]:
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
         data["reference"]["images"], data["reference"]["spp"], data["runs"], data["settings"]
+        if not isinstance(data.get("max_spp"), (int, type(None))):
+            raise TypeError(f'"max_spp" is {data["max_spp"]!r}')
     except (ValueError, KeyError, TypeError) as error:
         raise RuntimeError(
             f"WardMIS: {path} is no list of renders ({error}); delete it to render them again"

@@ -18,7 +18,8 @@ from ..process import RendererError
 from ..properties import ALLOCATIONS
 from . import child, images, job, plot, properties
 from .converge import OWN, Outcome, Study, arguments, explain_half
-from .run import CYCLES_FOLDER, SCENE_NAME, divide, prepare, scene_title, threads_of
+from .cycles import require_cycles
+from .run import CYCLES_FOLDER, SCENE_NAME, divide, forget, prepare, scene_title, threads_of
 from .same_scene import same_but_for_rounding, settle
 from .scene_file import read_scene_file
 
@@ -63,10 +64,12 @@ def begin(context: Any) -> job.Job:
     except RendererError as error:
         raise RuntimeError(f"WardMIS: {error}") from error
     if settings.use_cycles:
+        require_cycles(scene)
         _check_unsaved_images()
     staging = Path(bpy.app.tempdir) / "wardmis-comparison"
     exported = prepare(staging, study).scene
     folder = _folder(home(scene), study, settings, scene.wardmis, exported)
+    new = not folder.exists()
     try:
         folder.mkdir(parents=True, exist_ok=True)
         settle(exported, folder / SCENE_NAME)
@@ -93,7 +96,7 @@ def begin(context: Any) -> job.Job:
         layer = context.view_layer.name
         stages.append(job.Stage("Cycles", child.command(blend, scene.name, layer, renders, outcome.scene, plan)))
     stages.append(own())
-    return job.start(folder, stages, _finished, temporary)
+    return job.start(folder, stages, _finished, temporary, (lambda: forget(outcome)) if new else None)
 
 
 def _folder(place: Path, study: Study, settings: Any, render_settings: Any, exported: Path) -> Path:

@@ -16,6 +16,8 @@ VERDICT_ICONS = {
     "slower": "X",
     "no difference found": "REMOVE",
     "target not reached": "QUESTION",
+    "under the target from the start": "SORTTIME",
+    "the baseline has no time": "CANCEL",
 }
 TEXT_WIDTH = 7  # pixels of a letter, about, at a scale of the interface of 1
 ICON_LETTERS = 4  # whose place an icon takes

@@ -11,7 +11,14 @@ from typing import Any
 SCHEMA = "wardmis-report-1"
 REFERENCE = "reference"  # its image, among those of the configurations
 # "baseline", of the one that the others are compared with, is none
-VERDICTS = {"faster": "faster", "slower": "slower", "tie": "no difference found", "not reached": "target not reached"}
+VERDICTS = {
+    "faster": "faster",
+    "slower": "slower",
+    "tie": "no difference found",
+    "not reached": "target not reached",
+    "under from the start": "under the target from the start",
+    "not compared": "the baseline has no time",
+}
 
 
 @dataclass

@@ -17,7 +17,8 @@ from ..preferences import renderer_path
 from ..process import Renderer, RendererError
 from . import interrupt
 from .converge import DEFAULT_CONFIGURATIONS, STOPPED, Outcome, Study, arguments, explain_half
-from .cycles import CyclesPlan, Progress, render_cycles
+from .cycles import CyclesPlan, Progress, render_cycles, require_cycles
+from .lock import alone
 from .overrides import Setting, overridden
 from .same_scene import settle
 from .scene_file import read_scene_file
@@ -84,13 +85,15 @@ def compare(
         _note(event, outcome, tell)
 
     folder = Path(bpy.path.abspath(os.fspath(output))).absolute()
+    try:
+        command = [str(renderer_path())]
+    except RendererError as error:
+        raise RuntimeError(f"WardMIS: {error}") from error
+    if cycles:
+        require_cycles(scene)
     new = not folder.exists()
     with overridden(_resolution(scene, resolution)):
         outcome = prepare(folder, study)
-        try:
-            command = [str(renderer_path())]  # before Cycles takes its time
-        except RendererError as error:
-            raise RuntimeError(f"WardMIS: {error}") from error
         try:
             if cycles:
                 plan, study = divide(study, cycles_seeds, cycles_reference_spp, as_is)
@@ -106,7 +109,7 @@ def compare(
             raise
         except RuntimeError as error:
             if new:
-                _forget(outcome)
+                forget(outcome)
             raise RuntimeError(explain_half(str(error)) if cycles else str(error)) from error
         return outcome
 
@@ -131,6 +134,8 @@ def prepare(folder: Path, study: Study) -> Outcome:
         raise RuntimeError(
             f"WardMIS: {study.seeds} seeds cannot tell how sure a figure is; take at least {FEWEST_SEEDS}"
         )
+    if study.budget_seconds is not None and not study.budget_seconds > 0:
+        raise RuntimeError(f"WardMIS: a budget of {study.budget_seconds:g} seconds is none; give how long it may take")
     if study.max_spp < FEWEST_SAMPLES:
         raise RuntimeError(f"WardMIS: {study.max_spp} samples per pixel make no curve; take at least {FEWEST_SAMPLES}")
     try:
@@ -177,14 +182,15 @@ def divide(
     return plan, dataclasses.replace(study, budget_seconds=half)
 
 
-def _forget(outcome: Outcome) -> None:
-    """Of a comparison that was refused, and has rendered nothing, nothing stays."""
-    if any((outcome.folder / name).exists() for name in RENDERED):
-        return
-    outcome.scene.unlink(missing_ok=True)
-    for folder in (outcome.folder / CYCLES_FOLDER, outcome.folder):
+def forget(outcome: Outcome) -> None:
+    """Of a comparison that has made its folder, was refused and has rendered nothing, nothing stays."""
+    with contextlib.suppress(OSError, RuntimeError), alone(outcome.folder):
+        if any((outcome.folder / name).exists() for name in RENDERED):
+            return
+        outcome.scene.unlink(missing_ok=True)
         with contextlib.suppress(OSError):
-            folder.rmdir()
+            (outcome.folder / CYCLES_FOLDER).rmdir()
+        outcome.folder.rmdir()
 
 
 def scene_title(scene: Any) -> str:

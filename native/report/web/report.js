@@ -428,7 +428,6 @@
     const verdict = (c) => {
       const t = c.time_to_target;
       if (!t) return kNone;
-      if (c === baseline) return t.seconds ? "baseline" : "not reached";
       return t.verdict === "tie" ? h("span", { class: "tie" }, "tie") : t.verdict;
     };
     const time = (c) => {
@@ -474,7 +473,7 @@
       table("with all pixels", [["Configuration"], ["Seconds to target", "number"], ["Ratio of times", "number"], ["At equal time", "number"], ["At equal samples", "number"], ["Variance × CPU seconds, ratio", "number"]],
         all.map((c) => {
           const a = c.all_pixels, of = (part) => (c === baseline ? kNone : part ? ratio(part.ratio) : kNone);
-          return [named(c), a.time_to_target.seconds ? interval(a.time_to_target.seconds) : "not reached", of(a.time_to_target), of(a.equal_time), of(a.equal_samples), of(a.efficiency)];
+          return [named(c), a.time_to_target.seconds ? interval(a.time_to_target.seconds) : a.time_to_target.verdict, of(a.time_to_target), of(a.equal_time), of(a.equal_samples), of(a.efficiency)];
         }))) : null;
     const parts = [
       one("equal_time", (e) => `At ${number(e.seconds)} s`, `Errors read from the curves at the same ${clock} time, and their ratios to the baseline’s: under 1 is better.`, ["s", (e, first) => (e.seconds === first.seconds ? kNone : number(e.seconds))]),
@@ -876,15 +875,15 @@
     const judged = of.filter((c) => c.bias), blocks = judged.find((c) => known(c.bias.block));
     const tested = (c, text) => (c.bias.tested ? text(c.bias) : kNone);
     const biases = judged.map((c) => [
-      named(c), flagged(c.bias.verdict, c.bias.verdict === "biased"), tested(c, (b) => `${integer(b.failed_blocks)} of ${integer(b.blocks)}`),
+      named(c), flagged(c.bias.verdict, c.bias.verdict === "biased"), tested(c, (b) => `${integer(b.failed_blocks)} of ${integer(b.blocks)}`), tested(c, (b) => (b.unmet_blocks > 0 ? integer(b.unmet_blocks) : kNone)),
       tested(c, (b) => number(b.smallest_p)), tested(c, (b) => number(b.threshold)), tested(c, (b) => number(b.image_z)),
     ]);
     return section("slope", "Slope and bias",
-      read("Without bias the squared error falls as 1/N, a slope of −1. A shallower line means bias or a heavy tail: rare, very bright samples, seen in the worst pixels’ share of the error and in single seeds far off the others."),
+      read("Without bias the squared error falls as 1/N, a slope of −1. A shallower line means bias, or a heavy tail (rare, very bright samples, seen in the worst pixels’ share of the error and in single seeds far off the others), or an allocation that does worse than its pilot."),
       table("slope", [["Configuration"], ["Slope", "number"], ["From spp", "number"], ["Flag: cause", "word-column"], ["Error in the worst 0.1 % of pixels", "number"], ["Largest / median error of a seed", "number"]], slopes),
       judged.length ? [
-        read(`Bias is the mean over the seeds against the reference, tested in ${blocks ? `blocks of ${blocks.bias.block} × ${blocks.bias.block} pixels` : "blocks of pixels"}. A block fails where its p is under the threshold, which allows for their number; z is that of the whole image.`),
-        table("bias", [["Configuration"], ["Bias", "word-column"], ["Blocks failed", "number"], ["Smallest p", "number"], ["Threshold", "number"], ["z of the image", "number"]], biases),
+        read(`Bias is the mean over the seeds against the reference, tested in ${blocks ? `blocks of ${blocks.bias.block} × ${blocks.bias.block} pixels` : "blocks of pixels"}. A block fails where its p is under the threshold, which allows for their number; those that are no darker than so few samples of the reference could be may have missed a rare light by chance, and do not count. z is that of the whole image.`),
+        table("bias", [["Configuration"], ["Bias", "word-column"], ["Blocks failed", "number"], ["Of these by chance, maybe", "number"], ["Smallest p", "number"], ["Threshold", "number"], ["z of the image", "number"]], biases),
       ] : null,
       words(of.map((c) => [c, [c.slope && c.slope.text, c.bias && c.bias.text]])));
   }

@@ -115,11 +115,36 @@ TEST(Seeds, RareLightThatNoSeedHasMetIsNotCalledBias) {
   EXPECT_EQ(s.bias.unmet, 1u);
   EXPECT_FALSE(s.biased());
   EXPECT_TRUE(s.unclear());
+  // more light than the reference's is not missed
+  Reference darker = reference;
+  for (int y = 0; y < kBlock; ++y)
+    for (int x = 0; x < kBlock; ++x)
+      for (int c = 0; c < 3; ++c) darker.image.rgb[static_cast<size_t>(3 * (y * kWidth + x) + c)] -= 2 * kLight;
+  EXPECT_TRUE(seedStatistics(seeds, darker, kSpp).biased());
   // of as many samples as the reference's they would have met it
   EXPECT_TRUE(seedStatistics(seeds, reference, kReferenceSpp).biased());
   // a light that does not scatter is not missed by chance
   reference.setVariance(std::vector<float>(variance.size(), 0.25f / kReferenceSpp));
   EXPECT_TRUE(seedStatistics(seeds, reference, kSpp).biased());
+}
+
+// What has the reference's own variance per sample and is too dark is caught as soon as without its help.
+TEST(Seeds, ADarkerOneIsNotExcused) {
+  Reference reference = exact();
+  constexpr uint32_t kReferenceSpp = 1 << 12;
+  reference.setVariance(std::vector<float>(reference.image.rgb.size(), 0.25f / kReferenceSpp));
+  reference.spp = kReferenceSpp;
+  const SeedStatistics strip = seedStatistics(images(normalNoise, 64, 2, -0.03f, 16), reference, 64);
+  EXPECT_TRUE(strip.biased()) << strip.bias.failed << " blocks, " << strip.bias.unmet << " unmet";
+  // by so little that the image alone shows it
+  const SeedStatistics all = seedStatistics(images(normalNoise, 64, 2, -0.0015f, kWidth), reference, 64);
+  EXPECT_EQ(all.bias.failed, 0u);
+  EXPECT_TRUE(all.bias.imageBiased()) << all.bias.imageZ;
+  // and where the reference is worth no more than a sample, it may be chance
+  reference.setVariance(std::vector<float>(reference.image.rgb.size(), 25.0f / kReferenceSpp));
+  const SeedStatistics unsure = seedStatistics(images(normalNoise, 64, 2, -0.01f, kWidth), reference, 64);
+  EXPECT_TRUE(unsure.bias.imageUnmet) << unsure.bias.imageZ;
+  EXPECT_TRUE(unsure.unclear());
 }
 
 TEST(Seeds, FalseAlarmsAreAsRareAsStated) {
@@ -168,6 +193,7 @@ TEST(Seeds, SlopesAreJudged) {
   EXPECT_EQ(cause(-1.4, -1.2, pilot), "allocation");
   EXPECT_EQ(cause(-0.9, -0.8, pilot, Interval{-0.85, -0.9, -0.8}), "allocation");
   EXPECT_EQ(cause(-0.9, -0.8, pilot, Interval{-1, -1.1, -0.9}), "unclear") << "it is the time";
+  EXPECT_EQ(cause(-0.9, -0.8, SlopeFacts{.unclear = true, .pilot = true}, Interval{-0.85, -0.9, -0.8}), "unclear");
   EXPECT_EQ(cause(-0.9, -0.8, apart, Interval{-0.85, -0.9, -0.8}), "unclear") << "it is not in the image";
   EXPECT_EQ(cause(-1.4, -1.2, apart), "unclear");
   // time that does not grow with the samples
