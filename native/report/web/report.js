@@ -71,7 +71,8 @@
   }
 
   // Numbers of a text, "4.6e-06", as those of the page.
-  const typeset = (text) => text.replace(/\b(\d(?:\.\d+)?)e([+-]\d+)\b/g, (_, mantissa, exponent) => `${mantissa} × 10${superscript(Number(exponent))}`);
+  const typeset = (text) =>
+    text.replace(/\b(\d(?:\.\d+)?)e([+-]\d+)\b/g, (_, mantissa, exponent) => `${mantissa} × 10${superscript(Number(exponent))}`).replace(/(^|[\s[])-(?=\d)/g, "$1−");
 
   // "0.620 [0.580, 0.660]" as two parts: the mean to three digits, its bounds to the same place.
   function intervalParts(i) {
@@ -194,7 +195,7 @@
   // What is said of each configuration in sentences.
   function words(list) {
     const items = list.map(([c, texts]) => [c, texts.filter((t) => t)]).filter(([, texts]) => texts.length);
-    return items.length ? h("dl", { class: "words" }, items.map(([c, texts]) => [h("dt", {}, named(c)), h("dd", {}, texts.join(" "))])) : null;
+    return items.length ? h("dl", { class: "words" }, items.map(([c, texts]) => [h("dt", {}, named(c)), h("dd", {}, texts.map(typeset).join(" "))])) : null;
   }
 
   // ---- Theme and plots -----------------------------------------------------------------------------------------------
