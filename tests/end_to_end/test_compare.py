@@ -64,6 +64,14 @@ class Compare(unittest.TestCase):
         notes = " ".join(report["configurations"][-1]["notes"])
         self.assertIn("synchronisation", notes)
 
+    def wait(self, process, condition):
+        """Until it holds; the process goes on meanwhile."""
+        deadline = time.monotonic() + 120
+        while not condition():
+            self.assertLess(time.monotonic(), deadline)
+            self.assertIsNone(process.poll())
+            time.sleep(0.02)
+
     def test_stopped_by_ctrl_c_and_gone_on_with(self):
         """./dev compare, as a terminal sends it, while Cycles renders; the teapot's export has other last bits each time."""
         with tempfile.TemporaryDirectory() as folder:
@@ -74,11 +82,7 @@ class Compare(unittest.TestCase):
             process = subprocess.Popen(command, cwd=ROOT, start_new_session=True, **pipes)
             self.addCleanup(process.kill)
             manifest = out / "cycles" / "manifest.json"
-            deadline = time.monotonic() + 120
-            while not (manifest.exists() and json.loads(manifest.read_text())["runs"]):
-                self.assertLess(time.monotonic(), deadline)
-                self.assertIsNone(process.poll())
-                time.sleep(0.02)
+            self.wait(process, lambda: manifest.exists() and json.loads(manifest.read_text())["runs"])
             os.killpg(process.pid, signal.SIGINT)
             _, said = process.communicate(timeout=60)
             self.assertEqual(process.returncode, 130, said)
@@ -112,11 +116,7 @@ class Compare(unittest.TestCase):
                 ]
                 process = subprocess.Popen([*command, *more, "--reference-time", "1"], cwd=ROOT, stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL)  # fmt: skip
                 self.addCleanup(process.kill)
-                deadline = time.monotonic() + 120
-                while not list(out.glob(rendering)):
-                    self.assertLess(time.monotonic(), deadline)
-                    self.assertIsNone(process.poll())
-                    time.sleep(0.02)
+                self.wait(process, lambda where=out, what=rendering: list(where.glob(what)))
                 process.kill()
                 process.wait()
                 time.sleep(0.5)
