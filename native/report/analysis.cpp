@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "report/gallery.h"
@@ -164,15 +165,20 @@ class Reporter {
   // noise.
   Goal goalOf(double Metrics::*value) const {
     const MetricInfo& metric = metricOf(value);
-    double target = 0;
+    double target = 0, half = std::numeric_limits<double>::infinity();
     for (const Measured& m : measured_) {
       if (isShort(m) || (m.seeds.biased() && &m != base_)) continue;  // it may have a limit of its own
       const Curves curves(m, metric, clock_);
       const auto last = Bootstrap(curves.seeds()).interval([&](std::span<const uint32_t> draw) {
         return std::optional(curves.mean(draw, curves.checkpoints() - 1).error.back());
       });
+      // few seeds, or a firefly in one, may not be sure of anything: an error on everybody's curve is asked for then
+      std::vector<uint32_t> all(curves.seeds());
+      std::iota(all.begin(), all.end(), 0u);
+      half = std::min(half, curves.mean(all).error[(curves.checkpoints() - 1) / 2]);
       target = std::max({target, last ? kTargetFactor * last->high : 0, kFloorFactor * floorOf(*m.reference, metric)});
     }
+    if (half > 0) target = std::min(target, half);
     return {&metric, e_.target.value_or(target > 0 ? roundUp(target) : 1e-3)};
   }
 
@@ -277,7 +283,7 @@ class Reporter {
 
   json biasOf(const Measured& m) const {
     const BiasTest& b = m.seeds.bias;
-    const bool heavy = m.seeds.tail.heavy(), known = m.reference->known();
+    const bool known = m.reference->known();
     std::string text = fmt::format(
         "{} of {} blocks of {} × {} pixels differ from the reference (p < {:.2g}); the whole image: z = {:.2f}",
         b.failed, b.blocks, kBlock, kBlock, b.threshold, b.imageZ);
@@ -292,7 +298,7 @@ class Reporter {
             : b.failed == 1    ? "that block is"
                                : "those blocks are");
     if (b.imageUnmet) unmet("the whole image is");
-    if (heavy && b.failed > b.unmet) text += "; the tail is heavy, so that the whole image alone counts";
+    if (m.seeds.imageAlone() && b.failed > 0) text += "; the tail is heavy, so that the whole image alone counts";
     if (m.runs->size() < kFewestTested) text += "; too few seeds for a test that would find much";
     if (!known) text += "; the reference's own noise is not known and counts as bias";
     return {{"tested", true},

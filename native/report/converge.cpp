@@ -35,6 +35,8 @@ constexpr uint32_t kReferenceChunks = 8;
 constexpr uint32_t kReferenceFactor = 16;        // samples of the reference over those of a run
 constexpr uint64_t kReferenceSeed = 0x5eed0000;  // far from the runs'
 constexpr double kReferenceShare = 0.25;         // of a budget
+constexpr double kUsedShare = 0.95;              // of a budget; the rest is for the report
+constexpr double kMargin = 1.25;                 // of a time that is said to be enough: speeds vary
 constexpr uint32_t kSurveySamples = 16;
 constexpr const char* kLayer = "ViewLayer";
 
@@ -51,7 +53,8 @@ json readJson(const fs::path& path) {
     if (!j.is_object()) throw Error(ExitCode::kFile, path.string() + ": is no JSON object", "delete it");
     return j;
   } catch (const json::exception& e) {
-    throw Error(ExitCode::kFile, fmt::format("{}: {}", path.string(), e.what()), "the file is damaged; delete it");
+    throw Error(ExitCode::kFile, fmt::format("{}: {}", path.string(), e.what()),
+                "the file is damaged; choose another folder, or delete this one");
   }
 }
 
@@ -222,9 +225,13 @@ class Study {
                                                              : kReferenceShare * plan_.budgetSeconds;
     const size_t targets = referenceTargets().size();
     if (plan_.budgetSeconds > 0) {
-      const double perRun = (0.95 * plan_.budgetSeconds - forReference) /
+      const double perRun = (kUsedShare * plan_.budgetSeconds - forReference) /
                             double(experiment_.configurations.size() * experiment_.seeds.size());
       const double affordable = perRun / perSample;
+      const double runs = 4 * perSample * double(experiment_.configurations.size() * experiment_.seeds.size());
+      const double enough = plan_.reference.empty() && plan_.referenceSeconds <= 0
+                                ? runs / (kUsedShare - kReferenceShare)
+                                : (runs + forReference) / kUsedShare;
       if (affordable < 4)
         throw Error(
             ExitCode::kUsage,
@@ -233,9 +240,7 @@ class Study {
                         plan_.budgetSeconds, std::max(0.0, affordable),
                         experiment_.configurations.size() * experiment_.seeds.size(), forReference),
             fmt::format("give at least {:.0f} s, or fewer configurations, fewer --seeds or a lower --resolution",
-                        std::ceil(1.1 * (forReference +
-                                         4 * perSample *
-                                             double(experiment_.configurations.size() * experiment_.seeds.size())))));
+                        std::ceil(kMargin * enough)));
       maxSpp_ = std::bit_floor(static_cast<uint32_t>(std::min(affordable, double(1u << 24))));
       referenceSpp_ = std::max(1u, maxSpp_ * kReferenceFactor / kReferenceChunks);
     }

@@ -100,18 +100,19 @@ std::string configurationsCsv(const json& report) {
     return c[object].is_object() ? c[object][key] : json();
   };
   std::string csv =
-      "configuration,renderer,runs,target_relmse," + header("seconds_to_target") + ',' + header("time_ratio") +
+      "configuration,renderer,runs,metric,clock,target," + header("seconds_to_target") + ',' + header("time_ratio") +
       ",verdict," + header("equal_time_ratio") + ',' + header("equal_samples_ratio") + ',' +
       header("variance_x_seconds") + ',' + header("variance_x_seconds_ratio") +
       ",slope,slope_low,slope_high,slope_cause,bias,bias_image_z,kurtosis,better,worse,undecided" +
-      ",all_pixels_target_relmse," + header("all_pixels_seconds_to_target") + ',' + header("all_pixels_time_ratio") +
-      ',' + header("all_pixels_equal_time_ratio") + ',' + header("all_pixels_equal_samples_ratio") + '\n';
+      ",all_pixels_target," + header("all_pixels_seconds_to_target") + ',' + header("all_pixels_time_ratio") + ',' +
+      header("all_pixels_equal_time_ratio") + ',' + header("all_pixels_equal_samples_ratio") + '\n';
   for (const json& c : report["configurations"]) {
-    csv += cell(c["name"]) + ',' + cell(c["renderer"]) + ',' + cell(c["runs"]) + ',' +
-           cell(part(c, "time_to_target", "target")) + ',' + cells(part(c, "time_to_target", "seconds")) + ',' +
-           cells(part(c, "time_to_target", "ratio")) + ',' + cell(part(c, "time_to_target", "verdict")) + ',' +
-           cells(part(c, "equal_time", "ratio")) + ',' + cells(part(c, "equal_samples", "ratio")) + ',' +
-           cells(part(c, "efficiency", "variance_x_seconds")) + ',' + cells(part(c, "efficiency", "ratio")) + ',';
+    csv += cell(c["name"]) + ',' + cell(c["renderer"]) + ',' + cell(c["runs"]) + ',' + cell(report["metric"]) + ',' +
+           cell(report["clock"]) + ',' + cell(part(c, "time_to_target", "target")) + ',' +
+           cells(part(c, "time_to_target", "seconds")) + ',' + cells(part(c, "time_to_target", "ratio")) + ',' +
+           cell(part(c, "time_to_target", "verdict")) + ',' + cells(part(c, "equal_time", "ratio")) + ',' +
+           cells(part(c, "equal_samples", "ratio")) + ',' + cells(part(c, "efficiency", "variance_x_seconds")) + ',' +
+           cells(part(c, "efficiency", "ratio")) + ',';
     for (const char* key : {"value", "low", "high", "cause"}) csv += cell(part(c, "slope", key)) + ',';
     csv += cell(part(c, "bias", "verdict")) + ',' + cell(part(c, "bias", "image_z")) + ',' +
            cell(part(c, "tail", "kurtosis"));

@@ -92,6 +92,7 @@ BiasTest testBias(const std::vector<RgbImage>& images, const Reference& referenc
     return s < 0 && samples > 0 && extra > 0 && pOfNormal(s / n / std::sqrt(extra * (1 + samples))) >= threshold;
   };
   BiasTest test;
+  test.chanceKnown = reference.known() && samples > 0;
   std::vector<double> z(truth.size());
   test.blocks = truth.size();
   test.threshold = sidak(kBiasLevel, test.blocks);

@@ -22,8 +22,9 @@ inline constexpr double kHeavySeeds = 3;     // largest over median error of a s
 // met it, and its variance says how dark so few samples could be: a block that is no darker tells nothing.
 struct BiasTest {
   size_t blocks = 0, failed = 0;
-  size_t unmet = 0;         // of the failed: not beyond what so few of the reference's samples would be off
-  bool imageUnmet = false;  // the same of the image as a whole
+  size_t unmet = 0;          // of the failed: not beyond what so few of the reference's samples would be off
+  bool imageUnmet = false;   // the same of the image as a whole
+  bool chanceKnown = false;  // whether the reference could tell that
   double smallestP = 1, threshold = 0, imageZ = 0, imageP = 1;
   std::vector<float> z;  // per pixel: of its block
   bool imageBiased() const { return imageP < kBiasLevel && !imageUnmet; }
@@ -48,8 +49,10 @@ struct SeedStatistics {
   BiasTest bias;
   Tail tail;
 
-  // Under a heavy tail a block that no large sample has met yet looks too dark and sure of it: the image alone counts.
-  bool biased() const { return tail.heavy() ? bias.imageBiased() : bias.biased(); }
+  // Under a heavy tail a block that no large sample has met yet looks too dark and sure of it: where the reference does
+  // not tell such blocks from others, the image alone counts.
+  bool imageAlone() const { return tail.heavy() && !bias.chanceKnown; }
+  bool biased() const { return imageAlone() ? bias.imageBiased() : bias.biased(); }
   // Something differs, but it may be chance or bias.
   bool unclear() const { return !biased() && (bias.failed > 0 || bias.imageP < kBiasLevel); }
 };

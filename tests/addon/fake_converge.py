@@ -50,7 +50,7 @@ def converge(options, film, mode):
         return None
     if options.budget_seconds:
         if float(options.budget_seconds) < POOR_SECONDS:
-            message = f"--budget-seconds {options.budget_seconds}: too little; give at least {POOR_SECONDS} s"
+            message = f"--budget-seconds {options.budget_seconds}: too little; give at least 3 s, or fewer seeds"
             say(event="error", code=2, message=message)
             return 2
         options.max_spp = CHOSEN_SAMPLES

@@ -117,7 +117,7 @@ class Background(PanelTest):
         ):
             self.assertEqual(bpy.ops.wardmis.compare(), {"FINISHED"})
             failed = self.wait()
-        self.assertIn("that is WardMIS' half of the budget: give twice as much", failed.failure)
+        self.assertIn("give at least 6 s in all, or fewer seeds, or compare without", failed.failure)
         self.assertFalse(failed.folder.exists())
 
     def test_cancel_ends_the_other_blender(self):

@@ -100,7 +100,7 @@ class Comparing(ComparisonTest):
         """Of renders whose costs are known: 0.1 s each, and 0.01 s a sample; two seeds, and four images of eight times the samples."""
         for budget, samples in ((10, 8), (30, 32), (1e6, 64), (5.5, 4), (5, None)):
             plan = cycles.CyclesPlan([1, 2], 64, budget_seconds=budget)
-            manifest = Manifest(self.folder / "cycles" / "manifest.json", {"settings": {}, "renderer": ""})
+            manifest = Manifest(self.folder / "cycles" / "manifest.json", {"settings": {}, "renderer": ""}, (8, 16))
             renders = cycles._Renders(self.scene, bpy.context.view_layer, manifest, plan, lambda _event: None)
             renders._measure_synchronisation = lambda: 0.1
             with mock.patch.object(renders, "_timed", lambda spp, _seed: (0.1 + 0.01 * spp, 0.0)):
@@ -113,9 +113,7 @@ class Comparing(ComparisonTest):
                     self.assertEqual(renders._affordable(budget / 2, 64), samples, budget)
 
     def test_a_budget_that_is_too_small_is_refused_at_once(self):
-        with self.assertRaisesRegex(
-            RuntimeError, "give at least 0.01 s; that is WardMIS' half of the budget: give twice"
-        ):
+        with self.assertRaisesRegex(RuntimeError, "give at least 6 s in all, or fewer seeds, or compare without"):
             wardmis.compare(self.folder, budget_seconds=0.001, **SMALL)
         self.assertFalse(self.folder.exists())
         # Cycles' own half
@@ -377,6 +375,21 @@ class Resuming(ComparisonTest):
         (self.folder / "cycles" / "run-0002-00002.exr").unlink()
         self.assertEqual(self.rendered(cycles_seeds=3), 1)
         self.assertEqual(self.rendered(cycles_reference_spp=8), 4)
+
+    def test_a_damaged_image_is_rendered_again(self):
+        self.rendered()
+        folder = self.folder / "cycles"
+        run, reference, other = (
+            folder / name for name in ("run-0002-00002.exr", "reference-1000004-00004.exr", "run-0001-00001.exr")
+        )
+        run.write_bytes(run.read_bytes()[:300])
+        reference.write_bytes(b"")
+        other.write_bytes((self.folder / "images" / "Cycles.exr").read_bytes()[:50])
+        said = []
+        self.assertEqual(self.rendered(progress=said.append), 3)
+        warnings = [event["message"] for event in said if event["event"] == "warning"]
+        for path in (run, reference, other):
+            self.assertIn(f"{path} is damaged; it is rendered again", warnings)
 
     def test_goes_on_although_the_export_has_other_last_bits(self):
         self.export_with_noise()

@@ -331,7 +331,7 @@ def odd():
     # five of ours, and a heavy tail: what leaves pixels out stands beside what does not
     heavy, _ = full()
     heavy["images"], heavy["metric"] = [], "relmse_trimmed"
-    heavy["configurations"].insert(2, configuration("auto") | {"name": "twin"})
+    heavy["configurations"].insert(2, configuration("auto") | {"name": "α=0.1 (twin) 50% <a/b>"})
     for c in heavy["configurations"]:
         c["all_pixels"] = {key: c[key] for key in ("time_to_target", "equal_time", "equal_samples", "efficiency")}
     under, _ = full()

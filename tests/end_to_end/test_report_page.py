@@ -228,6 +228,12 @@ class Page(unittest.TestCase):
                         scrolling = "return [...document.querySelectorAll('.table')].filter(e => e.scrollWidth > e.clientWidth).length"
                         self.assertEqual(self.run_js(scrolling), 0)
                         self.assertEqual(self.count("table[aria-label='with all pixels'] tbody tr"), 6)
+                        # names of any signs: the curves are drawn again
+                        for axis in ("cpu", "spp"):
+                            Select(self.one("select[name='against']")).select_by_value(axis)
+                        drawn = "return [...document.querySelectorAll('.curves .js-line')].length"
+                        self.assertGreaterEqual(self.run_js(drawn), 6)
+                        self.assertIn("Samples per pixel", self.text(".curves"))
                     if name == "under":
                         self.assertIn("nothing is left", self.text("#error [aria-live]"))
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -70,7 +71,8 @@ def explain_half(message: str) -> str:
     """A refusal of half a budget names the half, where the user has given the whole."""
     if "--budget-seconds" not in message or "give at least" not in message:
         return message
-    return f"{message}; that is WardMIS' half of the budget: give twice as much, or compare without Cycles"
+    doubled = re.sub(r"give at least (\d+) s", lambda found: f"give at least {2 * int(found[1])} s in all", message)
+    return f"{doubled}, or compare without Cycles, which has half of the budget"
 
 
 def arguments(study: Study, settings: Any, outcome: Outcome) -> list[str]:

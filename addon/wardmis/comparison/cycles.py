@@ -9,6 +9,7 @@ CPU time is this process', less that of renders of a single pixel with one sampl
 from __future__ import annotations
 
 import contextlib
+import math
 import statistics
 import time
 from collections.abc import Callable, Iterator
@@ -35,6 +36,7 @@ ONE_PIXEL_RENDERS = 3
 PROBE_SAMPLES = 8  # of the render that tells what a sample costs, where there is a budget
 FEWEST_OF_BUDGET = 4  # samples for which a budget must suffice, as WardMIS' own
 BUDGET_SHARE = 0.9  # the rest is for what cannot be foreseen
+MARGIN = 1.25  # of a time that is said to be enough: speeds vary
 CERTAIN = 5  # a CPU time is stated where it is so many times as large as what the synchronisation varies by
 WITHOUT_DENOISER = (
     "Cycles' images are not denoised, as the scene's settings would have it: this Blender was built without Open Image Denoise; "
@@ -82,7 +84,10 @@ def render_cycles(folder: Path, scene_file: SceneFile, plan: CyclesPlan, progres
         progress({"event": "warning", "message": WITHOUT_DENOISER})
     with overridden(settings), alone(folder):
         about = _about(scene, layer, scene_file, plan, lost)
-        manifest = Manifest(folder / "manifest.json", about)
+        x0, y0, x1, y1 = scene_file.film["border"]
+        manifest = Manifest(folder / "manifest.json", about, (y1 - y0, x1 - x0))
+        for path in manifest.damaged:
+            progress({"event": "warning", "message": f"{path} is damaged; it is rendered again"})
         _Renders(scene, layer, manifest, plan, progress).run()
     return manifest.path
 
@@ -90,6 +95,7 @@ def render_cycles(folder: Path, scene_file: SceneFile, plan: CyclesPlan, progres
 def _about(scene: Any, layer: Any, scene_file: SceneFile, plan: CyclesPlan, lost: list[str]) -> dict[str, Any]:
     different = scene_file.other_than_blenders()
     notes = [
+        "Cycles renders in one block of time, not in turns with WardMIS' configurations as these do among themselves",
         "seconds are those that Cycles states as its render time: without the synchronisation of the scene, to 0.01 s",
         f"CPU seconds are the process', less the median of {ONE_PIXEL_RENDERS} renders of one pixel, which synchronise the same scene",
     ]
@@ -160,7 +166,7 @@ class _Renders:
             raise RuntimeError(
                 f"WardMIS: {possible[0]} samples per pixel by Cycles take about {seconds(possible[0]):.0f} s here, with {len(self.plan.seeds)} "
                 f"seeds and the reference, and its half of the budget is {budget:.3g} s; give at least "
-                f"{2 * seconds(possible[0]) / BUDGET_SHARE:.0f} s in all, or fewer seeds of Cycles or a lower resolution, and another output folder; "
+                f"{math.ceil(MARGIN * 2 * seconds(possible[0]) / BUDGET_SHARE)} s in all, or fewer seeds of Cycles or a lower resolution, and another output folder; "
                 f"{place} keeps the report without it"
             )
         return fitting[-1]

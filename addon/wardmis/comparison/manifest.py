@@ -6,21 +6,27 @@ It is written after each render, whole, under a temporary name, so that a compar
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 from pathlib import Path
 from typing import Any
 
+from .exr import read_pass
+
 
 class Manifest:
     """The file `path`, its images beside it."""
 
-    def __init__(self, path: Path, about: dict[str, Any]) -> None:
-        """`about`: name, renderer, settings, notes, common_reference. Takes over what an earlier run has rendered with it.
+    def __init__(self, path: Path, about: dict[str, Any], shape: tuple[int, int]) -> None:
+        """`about`: name, renderer, settings, notes, common_reference. Takes over what an earlier run has rendered with it, where that
+        is whole and has the images' `shape` (rows, columns).
 
         Raises RuntimeError where the earlier renders are of another scene or were made with other settings.
         """
         self.path = path
+        self.shape = shape
+        self.damaged: list[Path] = []  # of the earlier images
         self.data: dict[str, Any] = {**about, "max_spp": None, "reference": {"images": [], "spp": None}, "runs": []}
         if path.exists():
             self._resume(_read(path))
@@ -56,7 +62,14 @@ class Manifest:
         self.write()
 
     def _there(self, name: str) -> bool:
-        return (self.path.parent / name).is_file()
+        path = self.path.parent / name
+        if not path.is_file():
+            return False
+        with contextlib.suppress(OSError):
+            if read_pass(path).shape[:2] == self.shape:
+                return True
+        self.damaged.append(path)
+        return False
 
     def has_run(self, seed: int, spp: int) -> bool:
         return any((run["seed"], run["spp"]) == (seed, spp) for run in self.data["runs"])

@@ -127,6 +127,8 @@
     { dash: "10px,3px,2px,3px,2px,3px", svg: "8 2 2 2 2 2", marker: "hexagon" },
     { dash: "1px,2px", svg: "1 2", marker: "star" },
   ];
+  // Plotly selects by it: nothing but letters, digits, "-" and "_".
+  const uidOf = (c) => c.name.replace(/[^\w-]/g, (sign) => `_${sign.codePointAt(0).toString(16)}_`);
   // The ninth has the first one's colour, but another dash and marker.
   const indexOf = (c) => configurations.indexOf(c);
   const styleOf = (c) => STYLES[(indexOf(c) + Math.floor(indexOf(c) / 8)) % 8];
@@ -315,7 +317,7 @@
         const colour = colourOf(c), low = of.map((p) => Math.max(p[metric.name].low, bottom / 2)), high = of.map((p) => p[metric.name].high);
         const px = of.map(axis.of);
         list.push({
-          uid: `band-${c.name}`, legendgroup: c.name, showlegend: false, hoverinfo: "skip", type: "scatter", mode: "lines",
+          uid: `band-${uidOf(c)}`, legendgroup: c.name, showlegend: false, hoverinfo: "skip", type: "scatter", mode: "lines",
           x: [...px, ...[...px].reverse()], y: [...high, ...low.reverse()], fill: "toself", fillcolor: alpha(colour, 0.18), line: { width: 0, color: colour },
         });
       }
@@ -324,7 +326,7 @@
         if (!of.length) continue;
         const colour = colourOf(c), style = styleOf(c);
         list.push({
-          uid: `line-${c.name}`, legendgroup: c.name, name: safe(isNarrow() ? short(c.name, 34) : c.name), type: "scatter", mode: "lines+markers",
+          uid: `line-${uidOf(c)}`, legendgroup: c.name, name: safe(isNarrow() ? short(c.name, 34) : c.name), type: "scatter", mode: "lines+markers",
           x: of.map(axis.of), y: of.map((p) => p[metric.name].mean),
           line: { color: colour, width: 2, dash: style.dash },
           marker: { size: 8, color: colour, symbol: of.map((p) => (p.near_floor ? `${style.marker}-open` : style.marker)), line: { width: 1.6, color: colour } },
@@ -363,7 +365,7 @@
     const missing = h("p", { class: "note", "aria-live": "polite" });
     function update() {
       curves.draw();
-      const out = configurations.filter((c) => !points(c).length).map((c) => c.name);
+      const out = configurations.filter((c) => !points(c).length && !c.curve.some((p) => known(p[metric.name]) && axis.of(p) > 0)).map((c) => c.name);
       const lower = configurations.filter((c) => c.curve.some((p) => known(p[metric.name]) && p[metric.name].mean <= 0)).map((c) => c.name);
       missing.textContent = [
         out.length ? `Not drawn, because not known here: ${out.join(", ")}.` : "",
@@ -970,7 +972,7 @@
         const { edges, counts } = c.prediction, all = counts.reduce((a, b) => a + b, 0) || 1;
         const y = counts.map((n) => (100 * n) / all);
         return {
-          uid: c.name, name: safe(isNarrow() ? short(c.name, 34) : c.name), type: "scatter", mode: "lines", x: [edges[0], ...edges], y: [0, ...y, 0], line: { shape: "hv", color: colourOf(c), width: 2, dash: styleOf(c).dash },
+          uid: uidOf(c), name: safe(isNarrow() ? short(c.name, 34) : c.name), type: "scatter", mode: "lines", x: [edges[0], ...edges], y: [0, ...y, 0], line: { shape: "hv", color: colourOf(c), width: 2, dash: styleOf(c).dash },
           text: ["", ...counts.map((n, k) => `<b>${safe(c.name)}</b><br>${k === 0 ? `up to ${number(2 ** edges[1])}` : k === counts.length - 1 ? `from ${number(2 ** edges[k])} on` : `${number(2 ** edges[k])} to ${number(2 ** edges[k + 1])}`}: ${percent(n / all)} of the pixels`), ""],
           hovertemplate: "%{text}<extra></extra>",
         };
@@ -1063,7 +1065,7 @@
         ["Baseline", baseline.name],
       ]),
       h("h3", {}, "Configurations"),
-      table("configurations", [["Configuration"], ["Renderer"], ["What it is", "wide"], ["Runs", "number"], ["Kernel", "word-column"], ["Left out"]],
+      table("configurations", [["Configuration"], ["Renderer"], ["What it is", "wide"], ["Runs", "number"], ["Kernel", "word-column"], ["Left out", "wide"]],
         configurations.map((c) => [named(c), c.renderer, c.description || settings(c) ? h("span", {}, c.description || "", " ", h("span", { class: "settings" }, settings(c))) : kNone,
           integer(c.runs), c.kernel || kNone, list(c.left_out)])),
       h("h3", {}, "Provenance"),

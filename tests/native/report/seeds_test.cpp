@@ -79,6 +79,23 @@ TEST(Seeds, AHeavyTailIsNoBias) {
   EXPECT_TRUE(both.biased()) << both.bias.imageZ;
 }
 
+// Where the reference tells which blocks may have missed something, the others count under a heavy tail too.
+TEST(Seeds, ABiasUnderAHeavyTailIsCaught) {
+  constexpr uint32_t kSpp = 64, kReferenceSpp = 1 << 16;
+  const double variance = 200 * 200 * 5e-5 + 0.000625;  // of a sample of rareNoise
+  Reference reference = exact();
+  reference.setVariance(std::vector<float>(reference.image.rgb.size(), static_cast<float>(variance / kReferenceSpp)));
+  reference.spp = kReferenceSpp;
+  const SeedStatistics honest = seedStatistics(images(rareNoise, kSpp, 11), reference, kSpp);
+  EXPECT_TRUE(honest.tail.heavy()) << honest.tail.kurtosis;
+  EXPECT_FALSE(honest.biased()) << honest.bias.failed - honest.bias.unmet;
+  for (const float shift : {0.1f, -0.1f}) {  // in the left quarter of the image
+    const SeedStatistics s = seedStatistics(images(rareNoise, kSpp, 11, shift, kWidth / 4), reference, kSpp);
+    EXPECT_TRUE(s.tail.heavy());
+    EXPECT_TRUE(s.biased()) << shift << ": " << s.bias.failed << " failed, " << s.bias.unmet << " unmet";
+  }
+}
+
 TEST(Seeds, TheReferencesOwnNoiseIsNoBias) {
   Reference noisy = exact();
   std::mt19937_64 random(4);
