@@ -580,8 +580,7 @@ class Reporter {
     for (const Run& run : *m.runs) dropped += run.counts.rare, pilot += run.pilotSeconds / double(m.runs->size());
     std::string description;
     for (const auto& [key, value] : c.described.items())
-      if (c.external || key == "allocation" || key == "weights" || key == "integrand" || key == "integrator" ||
-          key == "sampler")
+      if (key == "allocation" || key == "weights" || key == "integrand" || key == "integrator" || key == "sampler")
         description += (description.empty() ? "" : ", ") + key + " " +
                        (value.is_string() ? value.get<std::string>() : value.dump());
     json wins;

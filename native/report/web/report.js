@@ -477,7 +477,7 @@
         all.map((c) => {
           const a = c.all_pixels, of = (part) => (c === baseline ? kNone : part ? ratio(part.ratio) : kNone);
           return [named(c), a.time_to_target.seconds ? interval(a.time_to_target.seconds) : a.time_to_target.verdict, of(a.time_to_target), of(a.equal_time), of(a.equal_samples), of(a.efficiency)];
-        }))) : null;
+        }), "dense")) : null;
     const parts = [
       one("equal_time", (e) => `At ${number(e.seconds)} s`, `Errors read from the curves at the same ${clock} time, and their ratios to the baseline’s: under 1 is better.`, ["s", (e, first) => (e.seconds === first.seconds ? kNone : number(e.seconds))]),
       one("equal_samples", (e) => `At ${integer(e.spp)} samples per pixel`, `Errors at the same number of samples in the image, whatever they cost, and their ratios to the baseline’s.${apart}`, ["spp", (e, first) => (e.spp === first.spp ? kNone : integer(e.spp))]),
@@ -1065,9 +1065,9 @@
         ["Baseline", baseline.name],
       ]),
       h("h3", {}, "Configurations"),
-      table("configurations", [["Configuration"], ["Renderer"], ["What it is", "wide"], ["Runs", "number"], ["Kernel", "word-column"], ["Left out", "wide"]],
+      table("configurations", [["Configuration"], ["Renderer"], ["What it is", "wide"], ["Runs", "number"], ["Kernel", "word-column"], ["Left out"]],
         configurations.map((c) => [named(c), c.renderer, c.description || settings(c) ? h("span", {}, c.description || "", " ", h("span", { class: "settings" }, settings(c))) : kNone,
-          integer(c.runs), c.kernel || kNone, list(c.left_out)])),
+          integer(c.runs), c.kernel || kNone, list(c.left_out)]), "long"),
       h("h3", {}, "Provenance"),
       facts("provenance", [
         ["WardMIS", joined(p.version || report.version, p.compiler)], ["Flags", p.flags ? h("code", {}, p.flags) : null],
