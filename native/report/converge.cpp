@@ -225,13 +225,15 @@ class Study {
                                                              : kReferenceShare * plan_.budgetSeconds;
     const size_t targets = referenceTargets().size();
     if (plan_.budgetSeconds > 0) {
-      const double perRun = (kUsedShare * plan_.budgetSeconds - forReference) /
+      // besides the runs: what it took to know this, and what the survey and the costs will
+      const double overhead = wallSeconds() - start_ + 2 * kSurveySamples * perSample;
+      const double perRun = (kUsedShare * plan_.budgetSeconds - overhead - forReference) /
                             double(experiment_.configurations.size() * experiment_.seeds.size());
       const double affordable = perRun / perSample;
       const double runs = 4 * perSample * double(experiment_.configurations.size() * experiment_.seeds.size());
       const double enough = plan_.reference.empty() && plan_.referenceSeconds <= 0
-                                ? runs / (kUsedShare - kReferenceShare)
-                                : (runs + forReference) / kUsedShare;
+                                ? (runs + overhead) / (kUsedShare - kReferenceShare)
+                                : (runs + overhead + forReference) / kUsedShare;
       if (affordable < 4)
         throw Error(
             ExitCode::kUsage,
