@@ -62,6 +62,12 @@ class Curves {
     }
     return c;
   }
+  // Of all seeds.
+  Curve mean() const {
+    std::vector<uint32_t> all(seeds());
+    std::iota(all.begin(), all.end(), 0u);
+    return mean(all);
+  }
   size_t seeds() const { return runs_.size(); }
   size_t checkpoints() const { return runs_[0].checkpoints.size(); }
   uint32_t spp(size_t k) const { return runs_[0].checkpoints[k].spp; }
@@ -173,9 +179,7 @@ class Reporter {
         return std::optional(curves.mean(draw, curves.checkpoints() - 1).error.back());
       });
       // few seeds, or a firefly in one, may not be sure of anything: an error on everybody's curve is asked for then
-      std::vector<uint32_t> all(curves.seeds());
-      std::iota(all.begin(), all.end(), 0u);
-      half = std::min(half, curves.mean(all).error[(curves.checkpoints() - 1) / 2]);
+      half = std::min(half, curves.mean().error[(curves.checkpoints() - 1) / 2]);
       target = std::max({target, last ? kTargetFactor * last->high : 0, kFloorFactor * floorOf(*m.reference, metric)});
     }
     if (half > 0) target = std::min(target, half);
@@ -333,9 +337,7 @@ class Reporter {
     const std::optional<Interval> seconds =
         Bootstrap(m.runs->size()).interval([&](std::span<const uint32_t> draw) { return time(m, draw); });
     const std::optional<Interval> ratio = ratioToBase(m, time);
-    std::vector<uint32_t> all(m.runs->size());
-    std::iota(all.begin(), all.end(), 0u);
-    const char* none = curvesOf(m, goal).mean(all).error.front() < goal.target ? "under from the start" : "not reached";
+    const char* none = curvesOf(m, goal).mean().error.front() < goal.target ? "under from the start" : "not reached";
     return {{"target", goal.target},
             {"seconds", toJson(seconds)},
             {"ratio", toJson(ratio)},

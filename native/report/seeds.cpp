@@ -87,12 +87,12 @@ BiasTest testBias(const std::vector<RgbImage>& images, const Reference& referenc
     const double mean = s / n, variance = std::max(0.0, q / n - mean * mean) / (n - 1) + extra;
     return mean == 0 ? 0 : mean / std::sqrt(variance + square(kRounding * value));
   };
-  // too dark by more than the seeds' own spread explains, and by no more than the reference's does
-  const auto isUnmet = [&](double s, double extra, double threshold) {
-    return s < 0 && samples > 0 && extra > 0 && pOfNormal(s / n / std::sqrt(extra * (1 + samples))) >= threshold;
-  };
   BiasTest test;
   test.chanceKnown = reference.known() && samples > 0;
+  // too dark by more than the seeds' own spread explains, and by no more than the reference's does
+  const auto isUnmet = [&](double s, double extra, double threshold) {
+    return s < 0 && test.chanceKnown && extra > 0 && pOfNormal(s / n / std::sqrt(extra * (1 + samples))) >= threshold;
+  };
   std::vector<double> z(truth.size());
   test.blocks = truth.size();
   test.threshold = sidak(kBiasLevel, test.blocks);

@@ -64,6 +64,9 @@ class Compare(unittest.TestCase):
         notes = " ".join(report["configurations"][-1]["notes"])
         self.assertIn("synchronisation", notes)
 
+    def dev_compare(self, out, *options):
+        return [ROOT / "dev", "compare", "blend/teapot.blend", "-o", out, *options]
+
     def wait(self, process, condition):
         """Until it holds; the process goes on meanwhile."""
         deadline = time.monotonic() + 120
@@ -76,8 +79,8 @@ class Compare(unittest.TestCase):
         """./dev compare, as a terminal sends it, while Cycles renders; the teapot's export has other last bits each time."""
         with tempfile.TemporaryDirectory() as folder:
             out = Path(folder) / "study"
-            command = [ROOT / "dev", "compare", "blend/teapot.blend", "-o", out, "-c", "equal", "--seeds", "2"]
-            command += ["--max-spp", "32", "--cycles-reference-spp", "32", "--resolution", "96x64"]
+            size = ("--seeds", "2", "--max-spp", "32", "--cycles-reference-spp", "32", "--resolution", "96x64")
+            command = self.dev_compare(out, "-c", "equal", *size)
             pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
             process = subprocess.Popen(command, cwd=ROOT, start_new_session=True, **pipes)
             self.addCleanup(process.kill)
@@ -103,18 +106,8 @@ class Compare(unittest.TestCase):
         for rendering, *more in (("cycles/*.exr",), ("runs/*/*.exr", "--no-cycles", "--max-spp", "4096")):
             with self.subTest(rendering), tempfile.TemporaryDirectory() as folder:
                 out = Path(folder) / "study"
-                command = [
-                    ROOT / "dev",
-                    "compare",
-                    "blend/teapot.blend",
-                    "-o",
-                    out,
-                    "-c",
-                    "equal",
-                    "--resolution",
-                    "96x64",
-                ]
-                process = subprocess.Popen([*command, *more, "--reference-time", "1"], cwd=ROOT, stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL)  # fmt: skip
+                command = self.dev_compare(out, "-c", "equal", "--resolution", "96x64", "--reference-time", "1", *more)
+                process = subprocess.Popen(command, cwd=ROOT, stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL)  # fmt: skip
                 self.addCleanup(process.kill)
                 self.wait(process, lambda where=out, what=rendering: list(where.glob(what)))
                 process.kill()
@@ -127,22 +120,9 @@ class Compare(unittest.TestCase):
         """./dev compare, as it is documented."""
         with tempfile.TemporaryDirectory() as folder:
             out = Path(folder) / "study"
-            command = [
-                ROOT / "dev",
-                "compare",
-                "blend/teapot.blend",
-                "-o",
-                out,
-                "--max-spp",
-                "2",
-                "--seeds",
-                "2",
-                "-c",
-                "equal",
-                "--no-cycles",
-                "--resolution",
-                "48x32",
-            ]
+            command = self.dev_compare(
+                out, "--max-spp", "2", "--seeds", "2", "-c", "equal", "--no-cycles", "--resolution", "48x32"
+            )
             done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, stdin=subprocess.DEVNULL)
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
             self.assertTrue((out / "report.html").is_file())

@@ -131,6 +131,7 @@ class _Renders:
     def __init__(self, scene: Any, layer: Any, manifest: Manifest, plan: CyclesPlan, progress: Progress) -> None:
         self.scene, self.layer = scene, layer
         self.manifest, self.plan, self.progress = manifest, plan, progress
+        self.place = manifest.path.parent.parent  # the folder of the whole comparison
         self.one_pixel_cpu: list[float] = []
         self.began = time.monotonic()
         self.work: list[tuple[str, int, int]] = []
@@ -141,7 +142,7 @@ class _Renders:
         plan, manifest = self.plan, self.manifest
         spp = plan.max_spp
         if plan.budget_seconds is not None:  # once it has decided, the comparison goes on as it began
-            spp = manifest.max_spp or self._affordable(plan.budget_seconds, chosen_spp(manifest.path.parent.parent))
+            spp = manifest.max_spp or self._affordable(plan.budget_seconds, chosen_spp(self.place))
         manifest.decide(spp, plan.reference_of(spp))
         return spp
 
@@ -152,7 +153,6 @@ class _Renders:
         wall, _ = self._timed(PROBE_SAMPLES, 0)
         sample = max(0.0, wall - synchronisation) / PROBE_SAMPLES
         spent = time.monotonic() - self.began
-        place = self.manifest.path.parent.parent
 
         def seconds(spp: int) -> float:
             points = checkpoints(spp)
@@ -163,11 +163,12 @@ class _Renders:
         possible = [spp for spp in checkpoints(most) if spp >= FEWEST_OF_BUDGET] or [most]
         fitting = [spp for spp in possible if seconds(spp) <= BUDGET_SHARE * budget]
         if not fitting:
+            fewest, needed = possible[0], seconds(possible[0])
             raise RuntimeError(
-                f"WardMIS: {possible[0]} samples per pixel by Cycles take about {seconds(possible[0]):.0f} s here, with {len(self.plan.seeds)} "
+                f"WardMIS: {fewest} samples per pixel by Cycles take about {needed:.0f} s here, with {len(self.plan.seeds)} "
                 f"seeds and the reference, and its half of the budget is {budget:.3g} s; give at least "
-                f"{math.ceil(MARGIN * 2 * seconds(possible[0]) / BUDGET_SHARE)} s in all, or fewer seeds of Cycles or a lower resolution, and another output folder; "
-                f"{place} keeps the report without it"
+                f"{math.ceil(MARGIN * 2 * needed / BUDGET_SHARE)} s in all, or fewer seeds of Cycles or a lower resolution, "
+                f"and another output folder; {self.place} keeps the report without it"
             )
         return fitting[-1]
 
@@ -247,10 +248,9 @@ class _Renders:
         """Renders; returns the wall seconds that took, and the CPU seconds of this process."""
         for owner, name, value in cycles_settings.samples(self.scene, spp, seed, self.plan.as_is):
             setattr(owner, name, value)
-        place = self.manifest.path.parent.parent
         began, cpu_began = time.monotonic(), time.process_time()
         try:
-            with interrupt.busy(place), _cancellation() as cancelled:
+            with interrupt.busy(self.place), _cancellation() as cancelled:
                 ended = bpy.ops.render.render(scene=self.scene.name, layer=self.layer.name)
         except interrupt.Stopped:
             raise
@@ -260,7 +260,7 @@ class _Renders:
                 f"WardMIS: Cycles could not render the scene: {reason}; change what stops its own render, too"
             ) from error
         if cancelled or "FINISHED" not in ended:
-            raise interrupt.Stopped(place)
+            raise interrupt.Stopped(self.place)
         return time.monotonic() - began, time.process_time() - cpu_began
 
     def _render(self, kind: str, seed: int, spp: int) -> None:
