@@ -7,6 +7,7 @@
 
 #include "cli/options.h"
 #include "cli/paths.h"
+#include "cli/session.h"
 #include "cli/verbs.h"
 #include "report/difference.h"
 #include "report/metrics.h"
@@ -43,7 +44,7 @@ Verb addCompare(CLI::App& app) {
     const ImageError e = compareImages(image, reference);
     if (!o->difference.empty())
       if (const std::string note = writeDifference(o->difference, image, reference, o->scale); !note.empty())
-        fmt::print(stderr, "wardmis: warning: {}\n", note);
+        tell("wardmis: warning: " + note);
     const bool pass = o->maxRelMse < 0 || e.relMse <= o->maxRelMse;
     if (o->json) {
       fmt::print("{}\n", nlohmann::json{{"width", image.width},

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/options.h"
+#include "cli/session.h"
 #include "cli/verbs.h"
 #include "math/error.h"
 #include "scene/accel.h"
@@ -16,10 +17,11 @@ namespace {
 // Standard error for people; with --progress json also an event for the program that started us.
 int fail(bool json, wardmis::ExitCode code, const std::string& what, const std::string& hint) {
   const std::string message = hint.empty() ? what : what + "; " + hint;
-  fmt::print(stderr, "wardmis: error: {}\n", message);
+  wardmis::tell("wardmis: error: " + message);
   if (json)
-    fmt::print("{}\n", nlohmann::json{{"event", "error"}, {"code", static_cast<int>(code)}, {"message", message}}.dump(
-                           -1, ' ', false, nlohmann::json::error_handler_t::replace));
+    std::puts(nlohmann::json{{"event", "error"}, {"code", static_cast<int>(code)}, {"message", message}}
+                  .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)
+                  .c_str());
   std::fflush(stdout);
   return static_cast<int>(code);
 }

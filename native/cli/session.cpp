@@ -16,6 +16,12 @@ namespace {
 std::atomic<Stop> stopRequest{Stop::kNo};
 static_assert(std::atomic<Stop>::is_always_lock_free, "set from a signal handler");
 
+// fmt::print throws where this does not.
+void write(std::FILE* file, const std::string& text) {
+  std::fwrite(text.data(), 1, text.size(), file);
+  std::fflush(file);
+}
+
 void onSignal(int signal) {
   // the second Ctrl-C no longer waits for the pass to end
   const bool keep = signal == SIGINT && stopRequest.load() == Stop::kNo;
@@ -43,40 +49,40 @@ std::atomic<Stop>& stopOnSignals(bool watchStdin) {
   return stopRequest;
 }
 
+void tell(const std::string& text) { write(stderr, text + '\n'); }
+
 Reporter::Reporter(const std::string& kind)
     : json_(kind == "json"), bar_(kind == "bar" || (kind == "auto" && isatty(STDERR_FILENO) != 0)) {}
 
 void Reporter::event(const nlohmann::json& e) {
   if (!json_) return;
   const std::lock_guard lock(mutex_);
-  fmt::print("{}\n", e.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
-  std::fflush(stdout);
+  write(stdout, e.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n');  // main() looks for failures
 }
 
 void Reporter::warn(const std::string& message) {
   if (json_) return event({{"event", "warning"}, {"message", message}});
   clear();
-  fmt::print(stderr, "wardmis: warning: {}\n", message);
+  tell("wardmis: warning: " + message);
 }
 
 void Reporter::info(const std::string& message) {
   if (json_ || !bar_) return;
   clear();
-  fmt::print(stderr, "{}\n", message);
+  tell(message);
 }
 
 void Reporter::bar(double fraction, const std::string& doing, double seconds, double left) {
   if (!bar_) return;
   constexpr int kWidth = 30;
   const int full = static_cast<int>(fraction * kWidth);
-  fmt::print(stderr, "\r[{:#<{}}{:.<{}}] {:3.0f} %  {}  {:.1f} s, {:.1f} s left\x1b[K", "", full, "", kWidth - full,
-             100 * fraction, doing, seconds, left);
-  std::fflush(stderr);
+  write(stderr, fmt::format("\r[{:#<{}}{:.<{}}] {:3.0f} %  {}  {:.1f} s, {:.1f} s left\x1b[K", "", full, "",
+                            kWidth - full, 100 * fraction, doing, seconds, left));
   drawn_ = true;
 }
 
 void Reporter::clear() {
-  if (drawn_) fmt::print(stderr, "\r\x1b[K");
+  if (drawn_) write(stderr, "\r\x1b[K");
   drawn_ = false;
 }
 

@@ -16,6 +16,10 @@ namespace wardmis {
 // errors of write().
 std::atomic<Stop>& stopOnSignals(bool watchStdin);
 
+// Writes a line to standard error. Whoever read it may have gone (a closed pipe, a full disk): that ends nothing, since
+// a render must not be lost for want of a listener.
+void tell(const std::string& text);
+
 // Progress: a bar on a terminal for people, JSON lines on standard output for a program.
 class Reporter {
  public:

@@ -6,8 +6,10 @@
 #include <bit>
 #include <cmath>
 #include <condition_variable>
+#include <exception>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include "integrate/cost.h"
 #include "integrate/setup.h"
@@ -29,15 +31,29 @@ uint32_t pilotOf(const RenderSettings& s, uint32_t target) {
   return static_cast<uint32_t>(std::min(s.pilotSpp * growth, most));
 }
 
-// Calls a function every quarter of a second from a thread of its own, until destroyed.
+// Calls a function every quarter of a second from a thread of its own, until finished or destroyed.
 class Ticker {
  public:
   explicit Ticker(std::function<void()> f)
       : thread_([this, f = std::move(f)] {
           std::unique_lock lock(mutex_);
-          while (!wake_.wait_for(lock, std::chrono::milliseconds(250), [this] { return done_; })) f();
+          try {
+            while (!wake_.wait_for(lock, std::chrono::milliseconds(250), [this] { return done_; })) f();
+          } catch (...) {
+            failure_ = std::current_exception();
+          }
         }) {}
-  ~Ticker() {
+  ~Ticker() { join(); }
+
+  // From here on the function no longer runs. Throws what it threw, which ended its calls.
+  void finish() {
+    join();
+    if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+  }
+
+ private:
+  void join() {
+    if (!thread_.joinable()) return;
     {
       const std::lock_guard lock(mutex_);
       done_ = true;
@@ -46,10 +62,10 @@ class Ticker {
     thread_.join();
   }
 
- private:
   std::mutex mutex_;
   std::condition_variable wake_;
   bool done_ = false;
+  std::exception_ptr failure_;
   std::thread thread_;
 };
 
@@ -68,10 +84,11 @@ class Run {
   bool pass(uint32_t samples, Pilot* pilot) {
     std::atomic<int> done{0};
     const double total = tilesOf(film_);
-    const Ticker ticker([&] { report(pilot != nullptr, samples * done.load() / total); });
+    Ticker ticker([&] { report(pilot != nullptr, samples * done.load() / total); });
     renderTiles(
         setup_, film_, samples, pilot, [&]() -> Counts& { return counts_.local(); }, done,
         [&] { return stop() == Stop::kDiscard; });
+    ticker.finish();  // it reads what is written now
     if (stop() == Stop::kDiscard) return false;
     film_.samples += samples;
     return true;

@@ -370,29 +370,34 @@ class Stopping(CommandTest):
         with self.assertRaises(subprocess.TimeoutExpired):
             process.wait(1)
 
+    def deaf(self, *words, stream, sink):
+        """The exit code where nobody reads what the command writes to `stream`; its other stream."""
+        other = {"stdout": "stderr", "stderr": "stdout"}[stream]
+        pipes = {stream: sink, other: subprocess.PIPE}
+        done = subprocess.run([BINARY, *map(str, words)], stdin=subprocess.DEVNULL, timeout=60, text=True, **pipes)
+        return done.returncode, getattr(done, other)
+
     def test_listener_that_has_gone(self):
-        """A render goes on when nobody reads its progress."""
-        read, write = os.pipe()
-        os.close(read)
-        command = [
-            BINARY,
-            "render",
-            self.scene(),
-            "-o",
-            self.out,
-            "--spp",
-            "8",
-            "--resolution",
-            "48x32",
-            "--progress",
-            "json",
-        ]
+        """A render goes on when nobody reads its progress, and what has failed still says so by its exit code."""
+        # longer than the quarter of a second after which a thread of its own tells the progress
+        words = ["render", self.scene(), "-o", self.out, "--time", "1", "--resolution", "96x64", "--progress"]
+        gone, write = os.pipe()
+        os.close(gone)
+        full = os.open("/dev/full", os.O_WRONLY)
         try:
-            done = subprocess.run(command, stdout=write, stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, timeout=60)
+            for sink in (write, full):
+                for progress, stream in (("json", "stdout"), ("bar", "stderr")):
+                    with self.subTest(progress=progress, full=sink is full):
+                        self.out.unlink(missing_ok=True)
+                        code, said = self.deaf(*words, progress, stream=stream, sink=sink)
+                        # only what a program reads must arrive: a full disk cuts its last line
+                        self.assertEqual(code, 4 if (progress, sink) == ("json", full) else 0, said)
+                        self.assertTrue(self.out.exists())
+            code, said = self.deaf("info", self.folder / "none.glb", stream="stderr", sink=full)
+            self.assertEqual((code, said), (4, ""))
         finally:
             os.close(write)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertTrue(self.out.exists())
+            os.close(full)
 
 
 class Info(CommandTest):
