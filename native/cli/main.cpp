@@ -77,8 +77,9 @@ int main(int argc, char** argv) {
     for (const auto& [sub, run] : verbs)
       if (sub->parsed()) {
         const int code = run();
-        if (std::fflush(stdout) != 0 && errno != EPIPE)  // a reader that has gone wants no more
-          throw wardmis::Error(ExitCode::kFile, fmt::format("standard output: {}", std::strerror(errno)),
+        const int lost = wardmis::outputError();
+        if (lost != 0 && lost != EPIPE)  // a reader that has gone wants no more
+          throw wardmis::Error(ExitCode::kFile, fmt::format("standard output: {}", std::strerror(lost)),
                                "what was printed is not whole");
         return code;
       }

@@ -16,10 +16,12 @@ namespace {
 std::atomic<Stop> stopRequest{Stop::kNo};
 static_assert(std::atomic<Stop>::is_always_lock_free, "set from a signal handler");
 
+std::atomic<int> lost{0};  // errno of the first write to standard output that failed
+
 // fmt::print throws where this does not.
 void write(std::FILE* file, const std::string& text) {
-  std::fwrite(text.data(), 1, text.size(), file);
-  std::fflush(file);
+  const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size() && std::fflush(file) == 0;
+  if (int none = 0; !written && file == stdout) lost.compare_exchange_strong(none, errno);
 }
 
 void onSignal(int signal) {
@@ -51,13 +53,18 @@ std::atomic<Stop>& stopOnSignals(bool watchStdin) {
 
 void tell(const std::string& text) { write(stderr, text + '\n'); }
 
+int outputError() {
+  write(stdout, "");
+  return lost;
+}
+
 Reporter::Reporter(const std::string& kind)
     : json_(kind == "json"), bar_(kind == "bar" || (kind == "auto" && isatty(STDERR_FILENO) != 0)) {}
 
 void Reporter::event(const nlohmann::json& e) {
   if (!json_) return;
   const std::lock_guard lock(mutex_);
-  write(stdout, e.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n');  // main() looks for failures
+  write(stdout, e.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n');
 }
 
 void Reporter::warn(const std::string& message) {

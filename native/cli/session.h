@@ -20,6 +20,9 @@ std::atomic<Stop>& stopOnSignals(bool watchStdin);
 // a render must not be lost for want of a listener.
 void tell(const std::string& text);
 
+// Of standard output, after flushing it: the errno of the first failure so far, or 0.
+int outputError();
+
 // Progress: a bar on a terminal for people, JSON lines on standard output for a program.
 class Reporter {
  public:
