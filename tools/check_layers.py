@@ -14,7 +14,7 @@ LIBRARIES = {"embree": ["native/scene/accel"], "CLI": ["native/cli/"], "OpenImag
 
 # Python: Blender's modules, and where they may be imported.
 BLENDER = {"bpy", "bpy_extras", "mathutils", "gpu", "bl_ui", "nodeitems_utils"}
-WITH_BLENDER = ("addon/", "tests/addon/", "tests/end_to_end/cycles_scenes.py", "blend/")
+WITH_BLENDER = ("addon/", "tests/addon/", "tests/cycles/", "blend/")
 # These parts of the add-on are plain data: they must work, and be tested, without Blender.
 WITHOUT_BLENDER = tuple(f"addon/wardmis/export/{name}.py" for name in ("model", "glb", "target"))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far an image is from its reference."""
+"""How far an image is from its reference, and whether by more than chance."""
 
 import numpy as np
 from exr import Pixels
@@ -30,3 +30,9 @@ def reference_noise(reference: Pixels, variance: Pixels) -> float:
     """What the reference's own variance adds to every relMSE that is measured against it."""
     r = reference[..., :3].astype(np.float64)
     return float((variance[..., :3] / (r**2 + EPSILON)).mean())
+
+
+def normal_deviate(t: np.ndarray, degrees: np.ndarray) -> np.ndarray:
+    """The normal deviate that is exceeded as often as Student's t (Wallace 1959)."""
+    scale = (8 * degrees + 1) / (8 * degrees + 3)
+    return np.sign(t) * scale * np.sqrt(degrees * np.log1p(t**2 / degrees))

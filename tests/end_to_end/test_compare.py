@@ -23,8 +23,8 @@ if scene.endswith(".blend"):
     bpy.ops.wm.open_mainfile(filepath=scene, load_ui=False)
 else:
     sys.path[:0] = [names[0]]
-    import cycles_scenes
-    cycles_scenes.make(scene)
+    import render
+    render.make(render.SCENES[scene])
 wardmis.compare(folder + "/study", resolution=(72, 48), configurations=["equal", "auto"], max_spp=16, seeds=6, cycles_reference_spp=512)
 """
 
@@ -33,15 +33,23 @@ class Compare(unittest.TestCase):
     def compare(self, scene):
         temporary = tempfile.TemporaryDirectory(prefix="vergleich ü ")
         self.addCleanup(temporary.cleanup)
-        here = Path(__file__).parent
+        scenes = ROOT / "tests" / "cycles"
         blender.run(
-            "--factory-startup", "--python-exit-code", "1", "--python-expr", COMPARE, "--", temporary.name, scene, here
+            "--factory-startup",
+            "--python-exit-code",
+            "1",
+            "--python-expr",
+            COMPARE,
+            "--",
+            temporary.name,
+            scene,
+            scenes,
         )
         self.folder = Path(temporary.name) / "study"
         return json.loads((self.folder / "report.json").read_text())
 
     def test_a_diffuse_scene_has_one_reference_and_both_agree_with_it(self):
-        report = self.compare("areas")
+        report = self.compare("lamps-areas")
         (model,) = report["models"]
         self.assertTrue(model["common"], model)
         self.assertIs(model["agree"], True, model)

@@ -26,7 +26,7 @@ from functools import cache
 import numpy as np
 import plain
 from command import CommandTest, combined
-from test_cycles import normal_deviate
+from metrics import normal_deviate
 
 SCENES = ("mirror", "grazing", "lights", "alphas", "mesh", "touching", "large", "small")
 INTEGRATORS = ("direct", "path")

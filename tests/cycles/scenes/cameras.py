@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Cameras: their kinds, sensors, lenses, borders and pixels."""
+
+import math
+
+import bpy
+from stage import ball, box, camera, collection, daylight, diffuse, floor, instance, place, scene
+
+
+def things():
+    floor()
+    ball(location=(-0.9, 0.2, 1))
+    box(diffuse((0.4, 0.5, 0.6)), location=(1.3, 0.4, 0.6), scale=(0.6, 0.6, 0.6))
+    box(diffuse((0.6, 0.3, 0.2)), location=(0.5, -1.4, 0.25), scale=(0.25, 0.25, 0.25))
+    daylight()
+    made = camera()
+    made.scale = 1, 2, 0.5  # means nothing
+    return made.data
+
+
+@scene
+def shifted():
+    data = things()
+    data.shift_x, data.shift_y = 0.12, -0.08
+
+
+@scene
+def orthographic():
+    data = things()
+    data.type, data.ortho_scale, data.shift_x, data.shift_y = "ORTHO", 6, 0.05, 0.1
+
+
+@scene
+def depth_of_field():
+    data = things()
+    data.dof.use_dof, data.dof.focus_distance, data.dof.aperture_fstop = True, 6, 0.05
+
+
+@scene
+def polygonal_lens():
+    data = things()
+    data.dof.use_dof, data.dof.aperture_fstop = True, 0.05
+    data.dof.focus_object = bpy.data.objects["Ball"]
+    data.dof.aperture_blades, data.dof.aperture_rotation, data.dof.aperture_ratio = 5, 0.4, 1.6
+
+
+@scene
+def orthographic_lens():
+    data = things()
+    data.type, data.ortho_scale = "ORTHO", 6
+    data.dof.use_dof, data.dof.focus_distance, data.dof.aperture_fstop = True, 7, 2
+    data.dof.aperture_blades = 3
+
+
+@scene
+def vertical_fit():
+    data = things()
+    data.sensor_fit, data.sensor_height, data.sensor_width, data.shift_x = "VERTICAL", 20, 50, 0.05
+    bpy.context.scene.render.pixel_aspect_x = 1.5
+
+
+@scene
+def portrait():
+    data = things()
+    data.lens, data.shift_y = 30, 0.1
+    settings = bpy.context.scene.render
+    settings.resolution_x, settings.resolution_y, settings.pixel_aspect_y = 48, 72, 1.25
+
+
+@scene
+def horizontal_fit():
+    data = things()
+    data.sensor_fit, data.sensor_width = "HORIZONTAL", 24
+    bpy.context.scene.render.resolution_x, bpy.context.scene.render.resolution_y = 48, 60
+
+
+@scene
+def border():
+    things()
+    settings = bpy.context.scene.render
+    settings.resolution_x, settings.resolution_y, settings.resolution_percentage = 233, 152, 47
+    settings.use_border = settings.use_crop_to_border = True
+    settings.border_min_x, settings.border_max_x, settings.border_min_y, settings.border_max_y = 0.21, 0.83, 0.13, 0.76
+
+
+@scene
+def clipped():
+    data = things()
+    data.clip_start, data.clip_end = 6.6, 9
+
+
+@scene
+def units():
+    """The scale of the scene's units means nothing to a lens; a field of view does as its length."""
+    data = things()
+    bpy.context.scene.unit_settings.scale_length = 0.01
+    data.lens_unit, data.angle = "FOV", math.radians(60)
+
+
+@scene
+def sheared():
+    """The child of an object that is scaled unevenly."""
+    things()
+    made = bpy.context.scene.camera
+    parent = place("Parent", None, (0, 0, 0), (0.2, 0.1, 0.4), (1, 1.5, 0.8))
+    made.parent = parent
+
+
+@scene
+def of_an_instance():
+    """What a collection's instance shows is not what the scene's camera is."""
+    things()
+    inner = bpy.data.objects.new("Inner", bpy.data.cameras.new("Inner"))
+    instance(collection("Group", inner, box(location=(0, 2, 0.4), scale=(0.4, 0.4, 0.4))), (0, -1, 0))

@@ -1,0 +1,234 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Lamps. A light of one primary colour on white objects has a channel of the image for itself: three are compared in one scene."""
+
+import math
+
+from stage import (
+    BLUE,
+    GREEN,
+    RED,
+    add,
+    ball,
+    box,
+    camera,
+    collection,
+    emitter,
+    floor,
+    instance,
+    lamp,
+    mesh,
+    place,
+    scene,
+    sphere_mesh,
+)
+
+
+def things():
+    floor()
+    ball(location=(-0.9, 0.2, 1))
+    box(location=(1.3, 0.4, 0.6), scale=(0.6, 0.6, 0.6))
+    camera()
+
+
+@scene
+def points():
+    things()
+    lamp("POINT", (-2, -2, 4), 300, RED)
+    lamp("POINT", (2, -3, 3), 300, GREEN, shadow_soft_size=0.1)
+    lamp("POINT", (0.5, 1, 3), 300, BLUE, shadow_soft_size=0.8)
+
+
+@scene
+def spots():
+    things()
+    lamp("SPOT", (-2, -3, 4), 600, RED, spot_size=0.7, spot_blend=0.3)
+    lamp("SPOT", (2, -3, 3), 600, GREEN, spot_size=0.8, spot_blend=1.0, shadow_soft_size=0.3, scale=(1.4, 0.7, 1))
+    lamp("SPOT", (1, 1, 4), 600, BLUE, spot_size=1.5, spot_blend=0.0, shadow_soft_size=0.1)
+
+
+@scene
+def suns():
+    things()
+    lamp("SUN", (-2, -3, 4), 2, RED, angle=0)
+    lamp("SUN", (3, -3, 3), 2, GREEN, angle=0.1)
+    lamp("SUN", (1, 2, 4), 2, BLUE, angle=1.2)
+
+
+@scene
+def wide_suns():
+    things()
+    lamp("SUN", (-2, -3, 4), 2, RED, angle=math.radians(90))
+    lamp("SUN", (3, -3, 3), 2, GREEN, angle=math.radians(120))
+    lamp("SUN", (1, 2, 4), 2, BLUE, angle=math.radians(150))
+
+
+@scene
+def widest_suns():
+    things()
+    lamp("SUN", (-2, -3, 4), 2, RED, angle=math.radians(165))
+    lamp("SUN", (3, -3, 3), 2, GREEN, angle=math.radians(170))
+    lamp("SUN", (1, 2, 4), 2, BLUE, angle=math.radians(179))
+
+
+@scene
+def areas():
+    things()
+    lamp("AREA", (-2, -3, 3), 100, RED, turned=0.4, shape="RECTANGLE", size=2, size_y=0.5, scale=(1, 1.5, 1))
+    lamp("AREA", (3, -2, 3), 100, GREEN, shape="SQUARE", size=0.6, spread=1.2)
+    lamp("AREA", (0, 2, 3.5), 100, BLUE, shape="SQUARE", size=1.5)
+
+
+@scene
+def round_areas():
+    things()
+    lamp("AREA", (-2, -3, 3), 100, RED, shape="DISK", size=1)
+    lamp("AREA", (3, -2, 3), 100, GREEN, turned=0.5, shape="ELLIPSE", size=2, size_y=0.7)
+    lamp("AREA", (0, 2, 3.5), 100, BLUE, turned=0.5, shape="ELLIPSE", size=0.5, size_y=1.5, spread=0.8)
+
+
+@scene
+def seen_by_the_camera():
+    """Lamps are visible when their objects are told to be."""
+    things()
+    for color, x, kind, settings in (
+        (RED, -1.5, "POINT", {"shadow_soft_size": 0.3}),
+        (GREEN, 0.2, "AREA", {"shape": "DISK", "size": 0.7}),
+        (BLUE, 2, "SPOT", {"shadow_soft_size": 0.3}),
+    ):
+        made = lamp(kind, (x, -1, 2.2), 20, color, target=(0.6, -7, 3), **settings)
+        made.visible_camera = True
+
+
+def sheared_parent():
+    return place("Parent", None, (0, 0, 0), (0, 0, 0.5), (0.6, 1.5, 1))
+
+
+def sheared_lamps():
+    return [
+        lamp("SPOT", (-2, -1, 4), 600, RED, spot_size=0.7, spot_blend=0.3, shadow_soft_size=0.1),
+        lamp("AREA", (3, -1, 3), 100, GREEN, turned=0.7, shape="RECTANGLE", size=2, size_y=0.7),
+        lamp("AREA", (0, 1, 3.5), 100, BLUE, turned=0.6, shape="ELLIPSE", size=0.7, size_y=1.5, spread=1.5),
+    ]
+
+
+@scene
+def sheared():
+    things()
+    parent = sheared_parent()
+    for made in sheared_lamps():
+        made.parent = parent
+
+
+@scene
+def sheared_instances():
+    things()
+    instance(collection("Lamps", *sheared_lamps()), (0, 0, 0), (0, 0, 0.5), (0.6, 1.5, 1))
+
+
+@scene
+def without_shadow():
+    things()
+    for made in (
+        lamp("POINT", (-2, -2, 4), 300, RED),
+        lamp("SUN", (3, -3, 3), 2, GREEN),
+        lamp("AREA", (0, 2, 3.5), 100, BLUE),
+    ):
+        if hasattr(made.data.cycles, "cast_shadow"):
+            made.data.cycles.cast_shadow = False
+        else:
+            made.data.use_shadow = False
+
+
+@scene(bounces=3)
+def max_bounces():
+    """A lamp that lights first surfaces alone, one that lights two of them, one without limit."""
+    things()
+    wall = floor()
+    wall.location, wall.rotation_euler = (0, 3, 0), (math.pi / 2, 0, 0)
+    for limit, color, x in ((0, RED, -2), (1, GREEN, 0.5), (1024, BLUE, 2)):
+        lamp("POINT", (x, -2, 3), 300, color, shadow_soft_size=0.1).data.cycles.max_bounces = limit
+
+
+@scene
+def nodes():
+    """An Emission in the lamp's tree: its colour and strength count beside the lamp's own."""
+    things()
+    for made, color in ((lamp("POINT", (-2, -2, 4), 300), RED), (lamp("SUN", (3, -3, 3), 2, angle=0.1), GREEN)):
+        made.data.use_nodes = True
+        made.data.node_tree.nodes["Emission"].inputs["Color"].default_value = (*color, 1)
+        made.data.node_tree.nodes["Emission"].inputs["Strength"].default_value = 0.7
+
+
+@scene
+def muted_nodes():
+    """A muted Emission gives no light; a muted Math passes its first number."""
+    things()
+    dark = lamp("POINT", (-2, -2, 4), 300, RED)
+    dark.data.use_nodes = True
+    dark.data.node_tree.nodes["Emission"].mute = True
+    passed = lamp("POINT", (2, -3, 3), 300, GREEN)
+    passed.data.use_nodes = True
+    tree = passed.data.node_tree
+    half = add(tree, "Math", {"operation": "MULTIPLY", "mute": True})
+    half.inputs[0].default_value, half.inputs[1].default_value = 0.5, 0.1
+    tree.links.new(half.outputs[0], tree.nodes["Emission"].inputs["Strength"])
+    lamp("POINT", (1, 1, 3), 100, BLUE)
+
+
+@scene
+def falloff():
+    """Quadratic falloff is what light does; of the others the strength is kept."""
+    things()
+    made = lamp("POINT", (-2, -2, 4), 100, RED)
+    made.data.use_nodes = True
+    tree = made.data.node_tree
+    node = add(tree, "LightFalloff", Strength=3.0)
+    tree.links.new(node.outputs["Quadratic"], tree.nodes["Emission"].inputs["Strength"])
+    lamp("POINT", (2, -3, 3), 300, GREEN)
+
+
+@scene
+def blackbody():
+    things()
+    made = lamp("POINT", (-2, -2, 4), 300)
+    made.data.use_nodes = True
+    tree = made.data.node_tree
+    tree.links.new(add(tree, "Blackbody", Temperature=3500.0).outputs[0], tree.nodes["Emission"].inputs["Color"])
+
+
+@scene
+def hidden():
+    """Not rendered: hidden, in a hidden collection, black, of no power."""
+    things()
+    lamp("POINT", (-2, -2, 4), 300, RED).hide_render = True
+    lamp("POINT", (2, -3, 3), 300, GREEN)
+    group = collection("Hidden", lamp("POINT", (0.5, 1, 3), 300, BLUE), linked=True)
+    group.hide_render = True
+    lamp("POINT", (1, 1, 3), 0)
+    lamp("POINT", (1, 1, 3), 100, (0, 0, 0))
+
+
+@scene(since=(4, 0))
+def true_spheres():
+    """Without soft falloff a lamp with a radius is a sphere."""
+    things()
+    lamp("POINT", (-2, -2, 4), 300, RED, shadow_soft_size=0.5, use_soft_falloff=False)
+    lamp("SPOT", (2, -3, 3), 300, GREEN, shadow_soft_size=0.4, use_soft_falloff=False, spot_size=1)
+    lamp("POINT", (0.5, 1, 3), 300, BLUE, shadow_soft_size=0.8)
+
+
+@scene(since=(5, 0))
+def exposure():
+    """What 5.x added: exposure, a temperature, and a power that is not shared over the area."""
+    things()
+    lamp("POINT", (-2, -2, 4), 100, RED, exposure=1.5)
+    lamp("AREA", (3, -2, 3), 10, GREEN, shape="DISK", size=0.7, normalize=False)
+    lamp("SUN", (1, 2, 4), 1, BLUE, angle=0.3, use_temperature=True, temperature=4000)
+
+
+@scene
+def mesh_light():
+    """Of small triangles: 3.4's Cycles loses up to 5 % of the light of large ones."""
+    things()
+    lamp_mesh = mesh("Egg", *sphere_mesh(48, 24), emitter((1, 0.6, 0.2), 20))
+    lamp_mesh.location, lamp_mesh.rotation_euler, lamp_mesh.scale = (2.6, -2, 1), (0.3, 0, 1), (0.2, 0.2, 0.4)

@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Skies: constant ones, images, and what their nodes may hold."""
+
+import math
+
+import bpy
+import numpy as np
+from stage import add, ball, box, camera, floor, image, scene, sky, sun
+
+
+def things():
+    floor()
+    ball(location=(-0.9, 0.2, 1))
+    box(location=(1.3, 0.4, 0.6), scale=(0.6, 0.6, 0.6))
+    camera()
+
+
+def empty():
+    """A world with an output alone: its tree, and the output."""
+    tree = sky((0, 0, 0))
+    tree.nodes.clear()
+    return tree, tree.nodes.new("ShaderNodeOutputWorld")
+
+
+@scene
+def overcast():
+    things()
+    sky((0.9, 0.5, 0.2), 0.8)
+
+
+@scene
+def no_world():
+    things()
+    bpy.context.scene.world = None
+    sun()
+
+
+def pixels(width, height):
+    v, u = (np.mgrid[0:height, 0:width] + 0.5) / np.array([height, width])[:, None, None]
+    made = np.stack([v, 0.5 + 0.5 * np.sin(2 * math.pi * u), 0 * u + 0.3], axis=-1)
+    rows, columns = slice(5 * height // 8, 3 * height // 4), slice(5 * width // 32, width // 4)
+    made[rows, columns] = 30, 20, 10
+    return made
+
+
+def image_sky(width, **mapping):
+    """Smooth, with a window that is much brighter."""
+    things()
+    tree = sky((1, 1, 1))
+    texture = add(tree, "TexEnvironment", {"image": image("sky", pixels(width, width // 2), floats=True)})
+    node, coordinates = tree.nodes.new("ShaderNodeMapping"), tree.nodes.new("ShaderNodeTexCoord")
+    for name, value in mapping.items():
+        node.inputs[name].default_value = value
+    tree.links.new(coordinates.outputs["Generated"], node.inputs["Vector"])
+    tree.links.new(node.outputs["Vector"], texture.inputs["Vector"])
+    tree.links.new(texture.outputs["Color"], tree.nodes["Background"].inputs["Color"])
+    tree.nodes["Background"].inputs["Strength"].default_value = 0.7
+
+
+@scene
+def image_small():
+    image_sky(64, Rotation=(0.4, -0.3, 1.1))
+
+
+@scene
+def image_large():
+    image_sky(2048, Rotation=(0, 0, 0.5))
+
+
+@scene
+def image_seen():
+    """Behind things, where the camera looks at it."""
+    image_sky(64)
+    bpy.context.scene.camera.rotation_euler = 1.75, 0, 0.05
+    bpy.context.scene.camera.data.lens = 20
+
+
+@scene
+def muted_background():
+    things()
+    tree = sky((0.9, 0.5, 0.2))
+    tree.nodes["Background"].mute = True
+    sun()
+
+
+@scene
+def emission():
+    """An Emission in a Background's place."""
+    things()
+    tree, output = empty()
+    tree.links.new(add(tree, "Emission", Color=(0.9, 0.5, 0.2, 1), Strength=0.7).outputs[0], output.inputs["Surface"])
+
+
+@scene
+def added_shaders():
+    things()
+    tree, output = empty()
+    first = add(tree, "Background", Color=(0.9, 0.1, 0.2, 1), Strength=0.7)
+    second = add(tree, "Background", Color=(0.1, 0.5, 0.2, 1), Strength=0.7)
+    both = tree.nodes.new("ShaderNodeAddShader")
+    tree.links.new(first.outputs[0], both.inputs[0])
+    tree.links.new(second.outputs[0], both.inputs[1])
+    tree.links.new(both.outputs[0], output.inputs["Surface"])
+
+
+@scene
+def mixed_by_light_path():
+    """What the camera sees is another sky than what lights the scene."""
+    things()
+    tree, output = empty()
+    seen, lighting = (
+        add(tree, "Background", Color=(0.1, 0.2, 0.9, 1)),
+        add(tree, "Background", Color=(0.8, 0.7, 0.6, 1)),
+    )
+    mix, path = tree.nodes.new("ShaderNodeMixShader"), tree.nodes.new("ShaderNodeLightPath")
+    tree.links.new(path.outputs["Is Camera Ray"], mix.inputs[0])
+    tree.links.new(lighting.outputs[0], mix.inputs[1])
+    tree.links.new(seen.outputs[0], mix.inputs[2])
+    tree.links.new(mix.outputs[0], output.inputs["Surface"])
+    bpy.context.scene.camera.rotation_euler = 1.5, 0, 0.05
+    bpy.context.scene.camera.data.lens = 20
+
+
+@scene
+def color_nodes():
+    """An RGB node, a blackbody's colour and a Math node, all constant."""
+    things()
+    tree = sky((1, 1, 1))
+    color = add(tree, "RGB")
+    color.outputs[0].default_value = 0.3, 0.5, 0.8, 1
+    strength = add(tree, "Math", {"operation": "MULTIPLY"})
+    strength.inputs[0].default_value, strength.inputs[1].default_value = 0.5, 1.6
+    tree.links.new(color.outputs[0], tree.nodes["Background"].inputs["Color"])
+    tree.links.new(strength.outputs[0], tree.nodes["Background"].inputs["Strength"])
+
+
+@scene
+def blackbody():
+    things()
+    tree = sky((1, 1, 1))
+    tree.links.new(add(tree, "Blackbody", Temperature=3000.0).outputs[0], tree.nodes["Background"].inputs["Color"])
+
+
+@scene
+def without_nodes():
+    """The colour in the world's panel, until nodes are always used."""
+    things()
+    world = bpy.data.worlds.new("Plain")
+    world.color = 0.2, 0.4, 0.6
+    if bpy.app.version < (5, 0):
+        world.use_nodes = False
+    bpy.context.scene.world = world
