@@ -11,13 +11,13 @@ bl_info = {
     "description": "Ward reflectance with multiple importance sampling under chosen allocations of the samples",
 }
 
-from . import comparison, engine, nodes, operators, panels, preferences, properties, scripting  # noqa: E402
+from . import comparison, engine, nodes, operators, panels, preferences, properties, rendering, scripting  # noqa: E402
 from .comparison import compare  # noqa: E402
 from .operators import export_scene  # noqa: E402
 
 __all__ = ["compare", "export_scene", "register", "unregister"]
 
-_PARTS = (preferences, properties, nodes, engine, operators, panels, comparison, scripting)
+_PARTS = (rendering, preferences, properties, nodes, engine, operators, panels, comparison, scripting)
 
 
 def register() -> None:
@@ -26,5 +26,6 @@ def register() -> None:
 
 
 def unregister() -> None:
+    rendering.end()  # before anything that it needs goes
     for part in reversed(_PARTS):
         part.unregister()

@@ -18,6 +18,7 @@ from typing import Any
 
 import bpy
 
+from . import rendering
 from .export import ExportCancelled, ExportError, export_depsgraph
 from .export.camera import border, full_resolution
 from .passes import register_passes
@@ -51,7 +52,7 @@ class _Stopped(Exception):
 
 
 class WARDMIS_RenderEngine(bpy.types.RenderEngine):
-    bl_idname = "WARDMIS"
+    bl_idname = rendering.ENGINE
     bl_label = "WardMIS"
     bl_use_preview = False
     bl_use_gpu_context = False
@@ -67,7 +68,8 @@ class WARDMIS_RenderEngine(bpy.types.RenderEngine):
             with tempfile.TemporaryDirectory(prefix="wardmis-", dir=bpy.app.tempdir) as folder:
                 _Render(self, depsgraph, Path(folder)).run()
         except (ExportCancelled, _Stopped):
-            if bpy.app.background:  # a script must not take it for a success
+            # a script must not take it for a success, and an animation not go on without the add-on
+            if bpy.app.background or rendering.stopping():
                 self.report({"ERROR"}, "WardMIS: stopped before the image was complete")
         except (ExportError, RendererError) as error:
             self.report({"ERROR"}, f"WardMIS: {error}")
@@ -115,7 +117,7 @@ class _Render:
                 self._check_room_for_output(self.image_path.stat().st_size)
             self._show(self.image_path)
         except Exception:
-            if self.result is not None and not self.engine.test_break():
+            if self.result is not None and not self._stopped():
                 self.engine.end_result(self.result, cancel=True)
                 self.result = None
             raise
@@ -127,9 +129,12 @@ class _Render:
         name = f"wardmis.{self.layer.name}.statistics"
         self.engine.get_result().stamp_data_add_field(name, json.dumps(self.statistics))
 
+    def _stopped(self) -> bool:
+        return rendering.stopping() or self.engine.test_break()
+
     def _export(self, path: Path) -> None:
         self.engine.update_stats("", "Exporting the scene")
-        for note in export_depsgraph(self.depsgraph, path, self.engine.camera_override, self.engine.test_break):
+        for note in export_depsgraph(self.depsgraph, path, self.engine.camera_override, self._stopped):
             self._warn(note)
 
     def _check_room_for_output(self, size: int) -> None:
@@ -180,7 +185,7 @@ class _Render:
         while renderer.running():
             for event in renderer.events(POLL_SECONDS):
                 self._handle(event)
-            if self.engine.test_break():
+            if self._stopped():
                 raise _Stopped
         for event in renderer.finish():
             self._handle(event)

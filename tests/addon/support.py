@@ -85,9 +85,9 @@ class Run:
 
 
 def blender(
-    folder: Path, script: str, *arguments: str, fake: str = "good", **environment: str
+    folder: Path, script: str, *arguments: str, fake: str = "good", window: bool = False, **environment: str
 ) -> subprocess.Popen[str]:
-    """Starts a background Blender with the add-on; `script` sets the scene up, `arguments` are Blender's own."""
+    """Starts a Blender with the add-on, without a window if not told; `script` sets the scene up, `arguments` are Blender's own."""
     scripts = folder / "scripts"
     if not scripts.exists():
         (scripts / "addons").mkdir(parents=True)
@@ -108,7 +108,7 @@ def blender(
     }
     command = [
         bpy.app.binary_path,
-        "--background",
+        *([] if window else ["--background"]),
         "--factory-startup",
         "--python-exit-code",
         "1",
@@ -142,7 +142,7 @@ class RenderTest(unittest.TestCase):
         self.addCleanup(temporary.cleanup)
         self.folder = Path(temporary.name)
 
-    def run_blender(self, script: str = "", *arguments: str, **options: str) -> Run:
+    def run_blender(self, script: str = "", *arguments: str, **options: Any) -> Run:
         process = blender(self.folder, script, *(arguments or ("--render-frame", "1")), **options)
         output, errors = process.communicate(timeout=120)
         return Run(

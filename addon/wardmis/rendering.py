@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whether Blender is rendering with this add-on's engine, and how to make it end.
+
+In a window Blender renders in a thread of its own. An engine that is unregistered meanwhile is freed under it, and Blender crashes.
+Blender is done with the engine when it calls the handlers of the render's end; until then it may be evaluating the scene for it, be in
+its render(), or be about to call that for the next view layer or frame.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+import time
+from typing import Any
+
+import bpy
+
+ENGINE = "WARDMIS"
+LONGEST_SECONDS = 60.0  # that the evaluation of a scene may take, which nothing can stop
+START_SECONDS = 0.5  # within which a thread that has been started is in the render
+LOOK_SECONDS = 0.02
+
+_thread: int | None = None  # that renders
+_stopping = False
+
+
+def stopping() -> bool:
+    """Whether the renders are to end, now and with an error, so that Blender begins no further one of an animation."""
+    return _stopping
+
+
+def end() -> None:
+    """Ends the render that is under way, and waits for it. Raises RuntimeError where that cannot be."""
+    global _stopping
+    if _thread is None and bpy.app.is_job_running("RENDER"):
+        _wait(lambda: _thread is not None, START_SECONDS)  # if not, its end alone has not been noticed yet
+    if _thread is None:
+        return
+    if _thread == threading.get_ident():
+        raise RuntimeError("WardMIS: the add-on cannot be removed by what runs within a render with it")
+    _stopping = True
+    try:
+        ended = _wait(lambda: _thread is None, LONGEST_SECONDS)
+    finally:
+        _stopping = False
+    if not ended:
+        raise RuntimeError(
+            f"WardMIS: Blender is rendering, and has not stopped within {LONGEST_SECONDS:.0f} s; the add-on cannot be removed "
+            "meanwhile. Stop the render, then disable the add-on again"
+        )
+
+
+def _wait(condition: Any, seconds: float) -> bool:
+    deadline = time.monotonic() + seconds
+    while not condition() and time.monotonic() < deadline:
+        time.sleep(LOOK_SECONDS)  # and lets the render's Python go on
+    return bool(condition())
+
+
+@bpy.app.handlers.persistent
+def _on_start(*_: Any) -> None:
+    """The scene's own engine does not tell: a sequence or the compositor may render others."""
+    global _thread
+    if any(scene.render.engine == ENGINE for scene in bpy.data.scenes):
+        _thread = threading.get_ident()
+
+
+@bpy.app.handlers.persistent
+def _on_end(*_: Any) -> None:
+    global _thread
+    _thread = None
+
+
+_HANDLERS = (("render_init", _on_start), ("render_complete", _on_end), ("render_cancel", _on_end))
+
+
+def register() -> None:
+    for name, handler in _HANDLERS:
+        getattr(bpy.app.handlers, name).append(handler)
+
+
+def unregister() -> None:
+    for name, handler in _HANDLERS:
+        with contextlib.suppress(ValueError):
+            getattr(bpy.app.handlers, name).remove(handler)
