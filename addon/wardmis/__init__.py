@@ -11,13 +11,35 @@ bl_info = {
     "description": "Ward reflectance with multiple importance sampling under chosen allocations of the samples",
 }
 
-from . import comparison, engine, nodes, operators, panels, preferences, properties, rendering, scripting  # noqa: E402
+from . import (  # noqa: E402
+    comparison,
+    engine,
+    nodes,
+    operators,
+    panels,
+    passes,
+    preferences,
+    properties,
+    rendering,
+    scripting,
+)
 from .comparison import compare  # noqa: E402
 from .operators import export_scene  # noqa: E402
 
 __all__ = ["compare", "export_scene", "register", "unregister"]
 
-_PARTS = (rendering, preferences, properties, nodes, engine, operators, panels, comparison, scripting)
+_PARTS = (
+    rendering,
+    preferences,
+    properties,
+    passes,
+    nodes,
+    engine,
+    operators,
+    panels,
+    comparison,
+    scripting,
+)
 
 
 def register() -> None:

@@ -21,7 +21,7 @@ import bpy
 from . import rendering
 from .export import ExportCancelled, ExportError, export_depsgraph
 from .export.camera import border, full_resolution
-from .passes import register_passes
+from .passes import not_available, register_passes, wanted
 from .preferences import renderer_path
 from .process import Renderer, RendererError
 from .properties import ALLOCATIONS_WITH_PILOT
@@ -134,6 +134,8 @@ class _Render:
 
     def _export(self, path: Path) -> None:
         self.engine.update_stats("", "Exporting the scene")
+        for name in not_available(self.layer):
+            self._warn(f"view layer '{self.layer.name}': there is no pass {name}; it is left out")
         for note in export_depsgraph(self.depsgraph, path, self.engine.camera_override, self._stopped):
             self._warn(note)
 
@@ -162,7 +164,7 @@ class _Render:
     def _arguments(self) -> list[str]:
         settings, render = self.scene.wardmis, self.scene.render
         arguments = [self.scene_path, "-o", self.image_path, f"--layer={self.layer.name}"]
-        arguments += ["--progress", "json", "--watch-stdin"]
+        arguments += ["--passes", ",".join(wanted(self.layer)), "--progress", "json", "--watch-stdin"]
         if not bpy.app.background:  # nobody watches
             arguments += ["--preview", self.preview_path]
         arguments += ["--allocation", settings.allocation, "--weights", settings.weights]

@@ -119,6 +119,22 @@ class WARDMIS_RENDER_PT_performance(RenderPanel, bpy.types.Panel):
         self._column().prop(context.scene.wardmis, "threads")
 
 
+class WARDMIS_VIEWLAYER_PT_passes(Panel, bpy.types.Panel):
+    bl_label = "Passes"
+    bl_context = "view_layer"
+
+    def draw(self, context: Any) -> None:
+        layer, column = context.view_layer, self._column()
+        data = column.column(heading="Data")
+        data.prop(layer, "use_pass_z", text="Depth")
+        data.prop(layer, "use_pass_normal", text="Normal")
+        data.prop(layer.wardmis, "use_pass_albedo")
+        column.separator()
+        noise = column.column(heading="Samples")
+        noise.prop(layer.wardmis, "use_pass_variance")
+        noise.prop(layer.wardmis, "use_pass_allocation")
+
+
 class WARDMIS_VIEWLAYER_PT_override(Panel, bpy.types.Panel):
     bl_label = "Override"
     bl_context = "view_layer"
@@ -192,6 +208,7 @@ _CLASSES = (
     WARDMIS_RENDER_PT_light_paths,
     WARDMIS_RENDER_PT_film,
     WARDMIS_RENDER_PT_performance,
+    WARDMIS_VIEWLAYER_PT_passes,
     WARDMIS_VIEWLAYER_PT_override,
     WARDMIS_OBJECT_PT_ray_visibility,
     WARDMIS_LIGHT_PT_light,

@@ -1,26 +1,101 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The passes of a render, as docs/command.md names them.
+"""The passes of a render, as docs/command.md names them: one table for the panel, the compositor, the command and the file.
 
-A registered pass gets a socket in the compositor and its place in the result, where the channels of the image's file find it by name.
-Blender logs each one that a file lacks: Combined alone is in a preview, and a technique that the scene cannot use has no map.
+A pass is made where the view layer asks for it. Depth and Normal are asked for by Blender's own settings, as for Cycles, the others
+by `view_layer.wardmis`. Blender complains of a registered pass that a file lacks, so that a preview has all of them, too.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import bpy
+from bpy.props import BoolProperty, PointerProperty
+
+
+class Pass(NamedTuple):
+    name: str
+    channels: str
+    kind: str
+    group: str  # what `--passes` calls it
+
 
 PASSES = (
-    ("Combined", "RGBA", "COLOR"),
-    ("Depth", "Z", "VALUE"),
-    ("Normal", "XYZ", "VECTOR"),
-    ("Albedo", "RGB", "COLOR"),
-    ("Variance", "RGB", "COLOR"),
-    ("Allocation Lobe", "X", "VALUE"),
-    ("Allocation Cosine", "X", "VALUE"),
-    ("Allocation Light", "X", "VALUE"),
+    Pass("Combined", "RGBA", "COLOR", "combined"),
+    Pass("Depth", "Z", "VALUE", "depth"),
+    Pass("Normal", "XYZ", "VECTOR", "normal"),
+    Pass("Albedo", "RGB", "COLOR", "albedo"),
+    Pass("Variance", "RGB", "COLOR", "variance"),
+    Pass("Allocation Lobe", "X", "VALUE", "allocation"),
+    Pass("Allocation Cosine", "X", "VALUE", "allocation"),
+    Pass("Allocation Light", "X", "VALUE", "allocation"),
 )
+# Blender's own that this engine has, and those that are no pass of a render engine or change none
+BLENDERS = {"use_pass_z": "depth", "use_pass_normal": "normal"}
+OTHERS = {"use_pass_combined", "use_pass_cryptomatte_accurate", "use_pass_grease_pencil"}
+
+
+def _changed(self: Any, _context: Any) -> None:
+    """The compositor's sockets follow."""
+    for layer in self.id_data.view_layers:
+        layer.update_render_passes()
+
+
+class WARDMIS_PG_view_layer(bpy.types.PropertyGroup):
+    use_pass_albedo: BoolProperty(
+        name="Albedo",
+        description="Deliver the colour of the surfaces without light, diffuse and glossy together, as denoisers want it",
+        default=False,
+        update=_changed,
+    )
+    use_pass_variance: BoolProperty(
+        name="Variance",
+        description="Deliver how noisy each pixel still is: the variance of its value, for each colour; "
+        "its square root is the error to expect",
+        default=False,
+        update=_changed,
+    )
+    use_pass_allocation: BoolProperty(
+        name="Allocation",
+        description="Deliver how the samples were shared at each pixel: one pass for each of lobe, cosine and light, "
+        "with its share from 0 to 1",
+        default=False,
+        update=_changed,
+    )
+
+
+def wanted(layer: Any) -> list[str]:
+    """What `layer` asks for, as `--passes` calls it, in the order of PASSES."""
+    asked = {"combined", *(group for flag, group in BLENDERS.items() if getattr(layer, flag))}
+    asked |= {flag.removeprefix("use_pass_") for flag in _own_flags() if getattr(layer.wardmis, flag)}
+    return list(dict.fromkeys(p.group for p in PASSES if p.group in asked))
+
+
+def not_available(layer: Any) -> Iterator[str]:
+    """The passes that `layer` asks another engine for and that this one does not have, as Blender calls them."""
+    for flag in layer.bl_rna.properties:
+        name = flag.identifier
+        if name.startswith("use_pass_") and name not in {*BLENDERS, *OTHERS} and getattr(layer, name):
+            yield flag.name
 
 
 def register_passes(engine: Any, scene: Any, layer: Any) -> None:
-    for name, channels, kind in PASSES:
-        engine.register_pass(scene, layer, name, len(channels), channels, kind)
+    groups = wanted(layer)
+    for p in PASSES:
+        if p.group in groups:
+            engine.register_pass(scene, layer, p.name, len(p.channels), p.channels, p.kind)
+
+
+def _own_flags() -> list[str]:
+    return [p.identifier for p in WARDMIS_PG_view_layer.bl_rna.properties if p.identifier.startswith("use_pass_")]
+
+
+def register() -> None:
+    bpy.utils.register_class(WARDMIS_PG_view_layer)
+    bpy.types.ViewLayer.wardmis = PointerProperty(type=WARDMIS_PG_view_layer)
+
+
+def unregister() -> None:
+    del bpy.types.ViewLayer.wardmis
+    bpy.utils.unregister_class(WARDMIS_PG_view_layer)

@@ -122,13 +122,14 @@ json statisticsJson(const std::string& path, const RenderSettings& settings, con
           {"isa", clonedFor()}};
 }
 
+// `list` as --passes has it; empty: what a scene with `techniques` has. A pass that is named is there for every scene, so
+// that who asked for it knows what the file holds.
 std::vector<PassInfo> choosePasses(const std::string& list, TechniqueMask techniques) {
-  std::vector<PassInfo> all = passesFor(techniques);
-  if (list.empty()) return all;
+  if (list.empty()) return passesFor(techniques);
   std::vector<PassInfo> chosen;
   for (const std::string& want : CLI::detail::split(list, ',')) {
-    bool known = want == "allocation";  // a scene may have none
-    for (const PassInfo& p : all)
+    bool known = false;
+    for (const PassInfo& p : passesFor(kAllTechniques))
       if (p.group == want) chosen.push_back(p), known = true;
     if (!known)
       throw Error(ExitCode::kUsage, fmt::format("--passes: there is no pass '{}'", want),
@@ -195,7 +196,8 @@ int run(Options& o) {
   if (!o.preview.empty())
     observer.image = [&](const FilmBuffer& film) {
       if (previewed && since(lastPreview) < o.previewInterval) return;
-      writeExr(o.preview, toPasses(film, {{"Combined", "RGBA", "combined"}}, o.layer, scene.zUp), false);
+      const std::vector<PassInfo> passes = choosePasses(o.passes.empty() ? "combined" : o.passes, kAllTechniques);
+      writeExr(o.preview, toPasses(film, passes, o.layer, scene.zUp), false);
       reporter.event({{"event", "preview"}, {"path", o.preview}, {"samples", film.samples}});
       lastPreview = Clock::now();
       previewed = true;

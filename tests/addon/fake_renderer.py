@@ -3,7 +3,7 @@
 """Stands in for the command `wardmis` in the add-on's tests: follows docs/command.md, renders nothing, and fails as it is told.
 
 WARDMIS_FAKE says how (see MODES); WARDMIS_FAKE_LOG names a file that receives a JSON line of process id and arguments.
-Every pixel of pass number k (from 0) is k + x / width + 10 y / height, x and y of the full frame, so that a test can tell what went where.
+It writes the passes that --passes names. Every pixel of pass number k (from 0) is k + x / width + 10 y / height, x and y of the full frame, so that a test can tell what went where.
 """
 
 import argparse
@@ -38,6 +38,7 @@ PASSES = {
     "Albedo": "RGB",
     "Variance": "RGB",
     "Allocation Lobe": "X",
+    "Allocation Cosine": "X",
     "Allocation Light": "X",
 }
 
@@ -83,6 +84,7 @@ def parse():
     parser.add_argument("--layer", default="ViewLayer")
     parser.add_argument("--spp", type=int, default=64)
     parser.add_argument("--watch-stdin", action="store_true")
+    parser.add_argument("--passes", type=lambda names: names.split(","), default=[name.lower() for name in PASSES])
     options = "allocation weights integrand integrator time samples-per-hit pilot-spp min-fraction max-depth sampler seed threads progress"
     for option in options.split():
         parser.add_argument("--" + option)
@@ -107,7 +109,8 @@ def read_scene(path):
 def render(options, film, mode):
     x0, y0, x1, y1 = film["border"]
     width, height = x1 - x0, y1 - y0
-    passes = [{"name": name, "channels": channels} for name, channels in PASSES.items()]
+    chosen = {name: channels for name, channels in PASSES.items() if name.split()[0].lower() in options.passes}
+    passes = [{"name": name, "channels": channels} for name, channels in chosen.items()]
     say(
         event="start",
         version="0.0.0",
@@ -136,7 +139,7 @@ def render(options, film, mode):
             left=0.1 * (steps - step),
         )
         if options.preview and step == 1:
-            write_exr(options.preview, options.layer, {"Combined": "RGBA"}, film)
+            write_exr(options.preview, options.layer, chosen, film)
             say(event="preview", path=options.preview, samples=step)
     if mode == "crash":
         os.kill(os.getpid(), signal.SIGSEGV)
@@ -144,7 +147,7 @@ def render(options, film, mode):
     if mode == "wrong-size":
         film = {**film, "border": [x0, y0, x1 + 1, y1 + 1]}
     if mode != "nothing":
-        write_exr(options.output, options.layer, PASSES, film)
+        write_exr(options.output, options.layer, chosen, film)
     say(event="done", path=options.output, seconds=0.1, samples=options.spp, stats={"samples_per_pixel": options.spp})
 
 

@@ -24,6 +24,7 @@ def traces() -> dict[str, object]:
         "classes": sorted(name for name in dir(bpy.types) if "WARDMIS" in name.upper()),
         "panels": sorted(p.__name__ for p in theirs if "WARDMIS" in getattr(p, "COMPAT_ENGINES", ())),
         "scene": any(hasattr(bpy.types.Scene, name) for name in ("wardmis", "wardmis_comparison")),
+        "view layer": hasattr(bpy.types.ViewLayer, "wardmis"),
         "window manager": hasattr(bpy.types.WindowManager, "wardmis_results"),
         "handlers": len(bpy.app.handlers.load_pre),
         "menu": len(bpy.types.TOPBAR_MT_file_export._dyn_ui_initialize()),
@@ -38,7 +39,8 @@ class Registration(unittest.TestCase):
             gone = traces()
             self.assertEqual((gone["classes"], gone["panels"], gone["scene"]), ([], [], False))
             self.assertEqual(gone["menu"], registered["menu"] - 1)
-            self.assertEqual((gone["window manager"], gone["handlers"]), (False, registered["handlers"] - 2))
+            self.assertEqual((gone["window manager"], gone["view layer"]), (False, False))
+            self.assertEqual(gone["handlers"], registered["handlers"] - 2)
             wardmis.register()
             self.assertEqual(traces(), registered)
 

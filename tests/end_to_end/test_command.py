@@ -271,6 +271,12 @@ class Image(CommandTest):
         self.assertEqual(stats["seconds"]["pilot"], 0)
         self.assertEqual(stats["samples"]["lobe"], 0)
         self.assertNotIn("Allocation Lobe", exr.read(self.out).passes)
+        named = "--passes", "allocation,depth", "--preview", self.folder / "p.exr", "--preview-interval", "0"
+        self.run_command("render", scene, "-o", self.folder / "named.exr", "--spp", "2", *named)
+        for path in (self.folder / "named.exr", self.folder / "p.exr"):
+            passes = exr.read(path).passes
+            self.assertEqual(set(passes), {"Depth", *(f"Allocation {t}" for t in ("Lobe", "Cosine", "Light"))})
+            self.assertFalse(passes["Allocation Lobe"].any())
         # Lambert under a point, straight below it: 0.8/pi * 5/2^2
         self.assertAlmostEqual(combined(self.out)[7:9, 7:9, 0].mean(), 0.8 / np.pi * 5 / 4, delta=2e-3)
         # without the point, nothing gives light
