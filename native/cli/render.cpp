@@ -122,8 +122,8 @@ json statisticsJson(const std::string& path, const RenderSettings& settings, con
           {"isa", clonedFor()}};
 }
 
-// `list` as --passes has it; empty: what a scene with `techniques` has. A pass that is named is there for every scene, so
-// that who asked for it knows what the file holds.
+// `list` as --passes has it; empty: what a scene with `techniques` has. A pass that is named is there for every scene,
+// so that who asked for it knows what the file holds.
 std::vector<PassInfo> choosePasses(const std::string& list, TechniqueMask techniques) {
   if (list.empty()) return passesFor(techniques);
   std::vector<PassInfo> chosen;

@@ -18,6 +18,7 @@ import numpy as np
 import wardmis
 from comparison_support import SMALL, ComparisonTest
 from support import ADDON
+from wardmis import layout as panel_layout
 from wardmis import scripting
 from wardmis.comparison import colours, images, job, operators, panels, plot, properties
 from wardmis.comparison.exr import read_pass
@@ -367,7 +368,7 @@ class Sidebar(PanelTest):
         preferences = types.SimpleNamespace(system=types.SimpleNamespace(ui_scale=1))  # 0 without a window
         context = types.SimpleNamespace(region=region, preferences=preferences, scene=self.scene)
         blender = types.SimpleNamespace(context=context)
-        with mock.patch.object(panels, "bpy", blender):
+        with mock.patch.object(panel_layout, "bpy", blender):
             panel.draw(types.SimpleNamespace(layout=layout), context)
         return layout
 

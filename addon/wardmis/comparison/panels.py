@@ -8,6 +8,7 @@ from typing import Any
 import bpy
 
 from .. import compat
+from ..layout import draw_text, is_narrow
 from ..panels import RenderPanel
 from . import job, operators, properties
 
@@ -19,14 +20,11 @@ VERDICT_ICONS = {
     "under the target from the start": "SORTTIME",
     "the baseline has no time": "CANCEL",
 }
-TEXT_WIDTH = 7  # pixels of a letter, about, at a scale of the interface of 1
-ICON_LETTERS = 4  # whose place an icon takes
-NARROW = 320  # pixels, at such a scale: a sidebar as it opens; names beside their fields, and two columns, are cut off in less
 
 
 def draw_choices(layout: Any, settings: Any) -> None:
     """Configurations, and how much of each."""
-    narrow = _narrow()
+    narrow = is_narrow()
     body = layout.column()
     body.enabled = not job.running()
     body.use_property_split = not narrow
@@ -125,27 +123,6 @@ def legend_text(metric: str, target: float | None, baseline: str) -> str:
     return f"The signs: whether {until} is reached faster than by {baseline}"
 
 
-def _narrow() -> bool:
-    region = bpy.context.region
-    return bool(region) and region.width < NARROW * bpy.context.preferences.system.ui_scale
-
-
-def draw_text(layout: Any, text: str, icon: str = "NONE") -> None:
-    """Over as many lines as it needs: labels are cut off."""
-    region, scale = bpy.context.region, bpy.context.preferences.system.ui_scale
-    letters = max(20, int(region.width / (TEXT_WIDTH * scale)) - 6) if region else 60
-    if icon != "NONE":
-        letters -= ICON_LETTERS
-    lines = [""]
-    for word in text.split():
-        if lines[-1] and len(lines[-1]) + 1 + len(word) > letters:
-            lines.append("")
-        lines[-1] += f" {word}" if lines[-1] else word
-    column = layout.column(align=True)
-    for i, line in enumerate(lines):
-        column.label(text=line, icon=icon if i == 0 or icon == "NONE" else "BLANK1")
-
-
 class WARDMIS_RENDER_PT_compare(RenderPanel, bpy.types.Panel):
     bl_label = "Compare"
     bl_options = {"DEFAULT_CLOSED"}
@@ -182,7 +159,7 @@ class WARDMIS_IMAGE_PT_results(bpy.types.Panel):
         return properties.report() is not None
 
     def draw(self, _context: Any) -> None:
-        self.layout.use_property_split = not _narrow()
+        self.layout.use_property_split = not is_narrow()
         self.layout.use_property_decorate = False
         draw_results(self.layout)
 
