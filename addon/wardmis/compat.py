@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
+from collections.abc import Iterator
 from typing import Any
 
 import bpy
@@ -16,6 +18,22 @@ LIGHTS_OF_4_0 = VERSION >= (4, 0, 0)
 
 
 # --- meshes ---------------------------------------------------------------------------------------------------------
+#
+# The functions take the mesh, never a layer of it: a call may move the layers, and what was taken from Python before points nowhere.
+
+
+@contextlib.contextmanager
+def whole_mesh(instance: Any) -> Iterator[Any]:
+    """The mesh of a depsgraph instance with all its arrays, within the block: one in Edit Mode has them in a copy alone."""
+    mesh = instance.object.data
+    owner = instance.instance_object if instance.is_instance else instance.object
+    if not mesh.is_editmode or owner.data.as_pointer() != mesh.as_pointer():  # the latter: made by geometry nodes
+        yield mesh
+        return
+    try:
+        yield owner.to_mesh()
+    finally:
+        owner.to_mesh_clear()
 
 
 def _foreach(collection: Any, attribute: str, width: int, dtype: type) -> np.ndarray:
@@ -106,8 +124,11 @@ def corner_normals(mesh: Any) -> np.ndarray:
     return normals
 
 
-def uvs(layer: Any) -> np.ndarray:
-    """A UV layer, one per corner, (n, 2) float32."""
+def uvs(mesh: Any) -> np.ndarray | None:
+    """The UVs that renders use, one for each corner, (n, 2) float32; None: there are none."""
+    layer = next((layer for layer in mesh.uv_layers if layer.active_render), None)
+    if layer is None:
+        return None
     if VERSION >= (3, 5, 0):
         return _foreach(layer.uv, "vector", 2, np.float32)
     return _raw_or_foreach(layer.data, "uv", 2, np.float32)

@@ -54,6 +54,17 @@ class SceneTest(unittest.TestCase):
         return gather_scene(bpy.context.evaluated_depsgraph_get(), "test")
 
 
+def textured_material(name: str = "Textured") -> Any:
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    tree = material.node_tree
+    texture = tree.nodes.new("ShaderNodeTexImage")
+    texture.image = bpy.data.images.new(name, 4, 4)
+    principled = next(n for n in tree.nodes if n.bl_idname == "ShaderNodeBsdfPrincipled")
+    tree.links.new(texture.outputs["Color"], principled.inputs["Base Color"])
+    return material
+
+
 def read_glb(path: Path) -> tuple[dict[str, Any], bytes]:
     data = path.read_bytes()
     magic, version, size, length, kind = struct.unpack_from("<4sII I4s", data)

@@ -12,7 +12,7 @@ import bpy
 import numpy as np
 import wardmis
 from mathutils import Matrix
-from support import SceneTest
+from support import SceneTest, textured_material
 from wardmis import compat
 from wardmis.export import ExportCancelled, ExportError, export_depsgraph
 from wardmis.export.context import ExportContext
@@ -21,17 +21,6 @@ from wardmis.export.model import SceneData
 
 def triangles_of(scene: SceneData, mesh: int) -> int:
     return sum(len(p.triangles) for p in scene.meshes[mesh].primitives)
-
-
-def textured_material(name: str = "Textured"):
-    material = bpy.data.materials.new(name)
-    material.use_nodes = True
-    tree = material.node_tree
-    texture = tree.nodes.new("ShaderNodeTexImage")
-    texture.image = bpy.data.images.new(name, 4, 4)
-    principled = next(n for n in tree.nodes if n.bl_idname == "ShaderNodeBsdfPrincipled")
-    tree.links.new(texture.outputs["Color"], principled.inputs["Base Color"])
-    return material
 
 
 class Meshes(SceneTest):

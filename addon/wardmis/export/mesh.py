@@ -43,19 +43,17 @@ def gather_geometry(mesh: Any, with_uvs: bool, context: ExportContext) -> Geomet
     context.check_cancelled()
     slots = _triangle_slots(mesh)
     shading = compat.shading(mesh)
-    uv_layer = next((layer for layer in mesh.uv_layers if layer.active_render), None) if with_uvs else None
+    uvs = compat.uvs(mesh) if with_uvs else None
     vertex_of_corner = compat.corner_vertices(mesh)
     context.check_cancelled()
-    if shading == "CORNER" or uv_layer is not None:
+    if shading == "CORNER" or uvs is not None:
         # take() is three times as fast as an index in brackets
-        geometry = Geometry(positions.take(vertex_of_corner, axis=0), None, None, corners, slots)
+        geometry = Geometry(positions.take(vertex_of_corner, axis=0), None, uvs, corners, slots)
         context.check_cancelled()
         if shading == "CORNER":
             geometry.normals = compat.corner_normals(mesh)
         elif shading == "POINT":
             geometry.normals = compat.vertex_normals(mesh).take(vertex_of_corner, axis=0)
-        if uv_layer is not None:
-            geometry.uvs = compat.uvs(uv_layer)
     else:
         geometry = Geometry(positions, None, None, vertex_of_corner.view(np.uint32)[corners], slots)
         if shading == "POINT":

@@ -135,7 +135,7 @@ class _Gatherer:
         # the evaluated mesh is the same one for objects that share a mesh and do not modify it
         key = (mesh.as_pointer(), materials)
         if key not in self._mesh_index:
-            self._mesh_index[key] = self._add_mesh(mesh, materials)
+            self._mesh_index[key] = self._add_mesh(instance, materials)
         index = self._mesh_index[key]
         if index is not None:
             self._note_compositing(obj.original)
@@ -143,11 +143,13 @@ class _Gatherer:
             if len(hidden) < len(VISIBILITY):
                 self.instances.append(InstanceData(obj.name, index, self._matrix(instance), hidden))
 
-    def _add_mesh(self, mesh: Any, materials: tuple[int, ...]) -> int | None:
+    def _add_mesh(self, instance: Any, materials: tuple[int, ...]) -> int | None:
+        mesh = instance.object.data
         with_uvs = any(self.materials[m].needs_uv for m in materials)
         key = (mesh.as_pointer(), with_uvs)
         if key not in self._geometry:
-            self._geometry[key] = gather_geometry(mesh, with_uvs, self.context)
+            with compat.whole_mesh(instance) as whole:
+                self._geometry[key] = gather_geometry(whole, with_uvs, self.context)
         geometry = self._geometry[key]
         if geometry is None:
             return None
