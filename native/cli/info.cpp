@@ -28,6 +28,7 @@ Verb addInfo(CLI::App& app) {
 
   return [o] {
     const Scene scene = readGlb(o->scene);
+    requireMemoryFor(scene);
     Geometry geometry(scene);
     const Environment environment(scene);
     const Emitters emitters(scene, geometry, environment);

@@ -17,9 +17,10 @@ namespace {
 
 constexpr int kTileSize = 16;
 
-const Scene& withCamera(const Scene& scene) {
+const Scene& renderable(const Scene& scene) {
   if (!scene.camera)
     throw Error(ExitCode::kScene, scene.path + ": the scene has no camera", "add a camera, or make one active");
+  requireMemoryFor(scene);
   return scene;
 }
 
@@ -47,7 +48,7 @@ TechniqueMask techniquesOf(const BuiltScene& built, uint32_t needs) {
 }  // namespace
 
 BuiltScene::BuiltScene(const Scene& s, int threads)
-    : scene(withCamera(s)),
+    : scene(renderable(s)),
       geometry((seconds = wallSeconds(), s)),
       environment(s),
       emitters(s, geometry, environment),

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/needs.h"
 
+#include <fmt/format.h>
+
+#include "math/error.h"
+#include "math/memory.h"
+
 namespace wardmis {
 
 uint32_t needs(const Material& m) {
@@ -56,6 +61,29 @@ std::vector<std::string> leftOut(const Scene& scene, uint32_t n, const Emitters&
                          : "only lights without area: only light samples reach them, nothing to allocate, no pilot");
   if (emitters.emissiveTriangles() == 0) out.emplace_back("no emissive mesh: no emissive triangles listed");
   return out;
+}
+
+void requireMemoryFor(const Scene& scene) {
+  // measured, with Embree's and what building takes for a moment
+  constexpr uint64_t kPerObject = 600, kPerEmitter = 50;
+  std::vector<uint64_t> emissive(scene.meshes.size(), 0);  // triangles, by mesh
+  for (size_t m = 0; m < scene.meshes.size(); ++m)
+    for (const MeshPart& part : scene.meshes[m].parts)
+      for (const Primitive& p : part.primitives)
+        if (maxComponent(scene.materials[static_cast<size_t>(p.material)].emission.value) > 0)
+          emissive[m] += p.indices.size() / 3;
+  uint64_t emitters = 0;  // at most 5 * 10^7 * 2^31
+  for (const Instance& i : scene.instances) emitters += emissive[static_cast<size_t>(i.mesh)];
+  requireMemory(kPerObject * scene.instances.size() + kPerEmitter * emitters,
+                fmt::format("{}: {} objects with {} emissive triangles, instances counted,", scene.path,
+                            scene.instances.size(), emitters),
+                emitters > 0 ? "place emissive meshes fewer times, give them fewer triangles, or use lights instead"
+                             : "place fewer objects");
+  // they are numbered in 32 bits
+  if (emitters > uint64_t{1} << 31)
+    throw Error(ExitCode::kMemory,
+                fmt::format("{}: {} emissive triangles, instances counted, are more than 2^31", scene.path, emitters),
+                "place emissive meshes fewer times, give them fewer triangles, or use lights instead");
 }
 
 std::string describe(uint32_t n) {

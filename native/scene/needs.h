@@ -37,6 +37,10 @@ uint32_t needs(const Scene& scene, const Geometry& geometry, const Emitters& emi
 // What a render with these needs leaves out, and why.
 std::vector<std::string> leftOut(const Scene& scene, uint32_t needs, const Emitters& emitters);
 
+// Objects and their emissive triangles are listed one by one, so that instances multiply what a small file holds:
+// throws Error(kMemory) where the list would not fit. Before anything is built.
+void requireMemoryFor(const Scene& scene);
+
 // "diffuse, specular, bounces": for the log.
 std::string describe(uint32_t needs);
 
