@@ -5,7 +5,9 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace wardmis {
@@ -21,11 +23,20 @@ struct Point {
   Densities logP{};  // their logarithms, finite where p underflows
 };
 
+constexpr Densities noLogarithms() {
+  Densities log{};
+  for (double& x : log) x = -std::numeric_limits<double>::infinity();
+  return log;
+}
+
 struct Points {
   int techniques = 0;
   std::vector<Point> list;
-  // Probability that a sample of the technique lies outside the domain, where f = 0 (below the horizon).
-  Densities outside{};
+  // Probability that a sample of the technique lies outside the domain, where f = 0 (below the horizon), and its
+  // logarithm, finite where it underflows.
+  Densities outside{}, logOutside = noLogarithms();
+
+  void setOutside(size_t i, double log) { outside[i] = std::exp(log), logOutside[i] = log; }
 
   // sum of w h(point)
   template <class F>

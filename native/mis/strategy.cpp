@@ -216,10 +216,26 @@ auto withNodes(const Points& points, F&& f) {
   return f(nodes);
 }
 
+constexpr double kLeastLog = -667;  // ln 1e-290: fractions below this are known by their logarithm alone
+
+// ln a_i. Of fractions below double's range those of Def. 9 follow from the moments; another one that is 0 is so.
+Densities logFractions(const Densities& a, const IntegrandMoments& m) {
+  const int n = m.techniques;
+  Densities logA{};
+  LogSum sum;
+  for (int i = 0; i < n; ++i) sum.add(1, -m.logSecond[at(i)]);
+  for (int i = 0; i < n; ++i) {
+    logA[at(i)] = std::log(a[at(i)]);
+    if (const double x = -m.logSecond[at(i)] - sum.log(); logA[at(i)] < kLeastLog && x < kLeastLog) logA[at(i)] = x;
+  }
+  return logA;
+}
+
 // The solution of A tau = b, A_ik = <p_i, p_k> and b_i = <f, p_i> under 1/q, with what lies outside the domain, where
-// q = a_i p_i. Scaled so that the diagonal is 1: by sqrt(a_i), a technique with next to no samples would be lost, whose
-// density is as good a control variate as any. Of least length: techniques that duplicate each other make A singular.
-Densities solveNormalEquations(const Points& points, const Densities& a) {
+// q = a_i p_i: o_i/a_i, of which both may underflow. Scaled so that the diagonal is 1: by sqrt(a_i), a technique with
+// next to no samples would be lost, whose density is as good a control variate as any, unless it reaches where nothing
+// else does. Of least length: techniques that duplicate each other make A singular.
+Densities solveNormalEquations(const Points& points, const Densities& a, const Densities& logA) {
   const int n = points.techniques;
   Eigen::MatrixXd m = Eigen::MatrixXd::Zero(n, n);
   Eigen::VectorXd b = Eigen::VectorXd::Zero(n), scale = Eigen::VectorXd::Zero(n);
@@ -232,7 +248,7 @@ Densities solveNormalEquations(const Points& points, const Densities& a) {
     }
   }
   for (int i = 0; i < n; ++i) {
-    if (points.outside[at(i)] > 0) m(i, i) += points.outside[at(i)] / a[at(i)];
+    if (const double log = points.logOutside[at(i)]; log > -kInfinity) m(i, i) += std::exp(log - logA[at(i)]);
     if (m(i, i) > 0) scale(i) = 1 / std::sqrt(m(i, i));  // infinite without samples that could see it: not usable
   }
   for (int i = 0; i < n; ++i) {
@@ -249,6 +265,11 @@ Densities solveNormalEquations(const Points& points, const Densities& a) {
   Densities tau{};
   for (int i = 0; i < n; ++i) tau[at(i)] = scale(i) * solution(i);
   return tau;
+}
+Densities solveNormalEquations(const Points& points, const Densities& a) {
+  Densities logA{};
+  for (int i = 0; i < points.techniques; ++i) logA[at(i)] = std::log(a[at(i)]);
+  return solveNormalEquations(points, a, logA);
 }
 
 // One Newton step on V(a) = integral f^2/(a p_1 + (1-a) p_2) from a = 1/2, clamped.
@@ -450,9 +471,11 @@ Densities optimalTau(const Points& points, const Densities& a) { return solveNor
 Contributions contributions(Weights rule, const Densities& a, const Points& points, const IntegrandMoments& m) {
   const int n = points.techniques;
   const Densities v = rule == W::kVarianceAware ? varianceAwareFactors(m) : Densities{};
-  const Densities tau = rule == W::kOptimal ? optimalTau(points, a) : Densities{};
+  const bool optimal = rule == W::kOptimal;
+  const Densities logA = optimal ? logFractions(a, m) : Densities{};
+  const Densities tau = optimal ? solveNormalEquations(points, a, logA) : Densities{};
   const auto y = [&](int i, const Point& x) {
-    if (rule != W::kOptimal) return weightedValue(rule, i, n, x.f, x.p, a, v);
+    if (!optimal) return weightedValue(rule, i, n, x.f, x.p, a, v);
     const double q = mixture(a, x.p, n);
     return q > 0 ? a[at(i)] * ((x.f - mixture(tau, x.p, n)) / q) : 0;
   };
@@ -472,8 +495,12 @@ Contributions contributions(Weights rule, const Densities& a, const Points& poin
     }
   }
   for (int i = 0; i < n; ++i) {
+    if (optimal && logA[at(i)] < kLeastLog) {
+      if (tau[at(i)] != 0) c.rare[at(i)] = square(tau[at(i)]) * std::exp(points.logOutside[at(i)] - logA[at(i)]);
+      continue;
+    }
     if (!(a[at(i)] > 0)) continue;
-    const double outside = points.outside[at(i)], there = rule == W::kOptimal ? -tau[at(i)] : 0;
+    const double outside = points.outside[at(i)], there = optimal ? -tau[at(i)] : 0;
     const double mean = c.mean[at(i)] += outside * there;
     double variance = outside * square(there - mean), fourth = variance * square(there - mean);
     for (const Term& t : std::span(terms).subspan(at(i) * size, size)) {
@@ -491,24 +518,13 @@ double logVariance(Weights rule, const Densities& a, const Points& points, const
 
 double logVariance(Weights rule, const Densities& a, const IntegrandMoments& m, const Contributions& c) {
   const int n = m.techniques;
-  Densities variance{}, logA{};
-  for (int i = 0; i < n; ++i) logA[at(i)] = std::log(a[at(i)]);
-  if (rule == W::kNonbalance) {
-    variance = m.variance;
-    // Fractions below double's range: those of Def. 9 follow from the moments; another one that is 0 leaves its part
-    // out, which is no finite variance.
-    Densities x{};
-    LogSum sum;
-    for (int i = 0; i < n; ++i) sum.add(1, x[at(i)] = -m.logSecond[at(i)]);
-    constexpr double kLeast = -667;  // ln 1e-290
-    for (int i = 0; i < n; ++i)
-      if (logA[at(i)] < kLeast && x[at(i)] - sum.log() < kLeast) logA[at(i)] = x[at(i)] - sum.log();
-  } else {
-    variance = c.variance;
-  }
+  const Densities& variance = rule == W::kNonbalance ? m.variance : c.variance;
+  const Densities logA = logFractions(a, m);
   LogSum sum;
-  for (int i = 0; i < n; ++i)
+  for (int i = 0; i < n; ++i) {
     if (!(variance[at(i)] == 0)) sum.add(1, std::log(variance[at(i)]) - logA[at(i)]);
+    if (!(c.rare[at(i)] == 0)) sum.add(1, std::log(c.rare[at(i)]));
+  }
   return sum.log();
 }
 

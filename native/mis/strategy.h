@@ -66,9 +66,10 @@ Densities varianceAwareFactors(const IntegrandMoments&);
 // tau of the optimal weights: F = sum_i tau_i + 1/N sum_ij (f - sum_k tau_k p_k)/q (X_ij).
 Densities optimalTau(const Points&, const Densities& a);
 
-// Of y_i = w_i f/p_i at a sample of technique i, its part of the estimate: mean and central moments.
+// Of y_i = w_i f/p_i at a sample of technique i, its part of the estimate: mean and central moments. rare: its part of
+// N Var where a_i is below double's range, and these are 0.
 struct Contributions {
-  Densities mean{}, variance{}, fourth{};
+  Densities mean{}, variance{}, fourth{}, rare{};
 };
 Contributions contributions(Weights, const Densities& a, const Points&, const IntegrandMoments&);
 

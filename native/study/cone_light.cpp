@@ -45,7 +45,7 @@ class ConeLight final : public Problem {
              },
              2}};
   }
-  double outside(int i) const override { return outside_[static_cast<size_t>(i)]; }
+  double logOutside(int i) const override { return std::log(outside_[static_cast<size_t>(i)]); }
   double logSecondMomentAtEdge(int) const override { return std::nan(""); }
 
   void sample(int i, Stream& random, SampleBlock& block, size_t first, size_t last) const override {

@@ -290,7 +290,7 @@ std::vector<double> Cubature::splitAtJumps(const Side& side, const Integrands& i
 Points Cubature::points() const {
   Points all;
   all.techniques = problem_.techniques();
-  for (int i = 0; i < all.techniques; ++i) all.outside[static_cast<size_t>(i)] = problem_.outside(i);
+  for (int i = 0; i < all.techniques; ++i) all.setOutside(static_cast<size_t>(i), problem_.logOutside(i));
   for (const Cell& cell : cells_) all.list.insert(all.list.end(), cell.points.begin(), cell.points.end());
   return all;
 }

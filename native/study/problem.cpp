@@ -5,13 +5,13 @@
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <boost/math/quadrature/tanh_sinh.hpp>
 #include <boost/math/special_functions/erf.hpp>
-#include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <limits>
 
 #include "bsdf/phong.h"
 #include "bsdf/ward.h"
 #include "math/warp.h"
+#include "study/peaks.h"
 #include "study/slope_disk.h"
 
 namespace wardmis {
@@ -74,59 +74,6 @@ Vec3<double> sampleHemisphere(StudyTechnique t, Stream& random) {
   return toCone(u, 1.0);
 }
 
-// ln of sum_i exp(E_i) I_i over an angle, integrated: exp(peak(psi)) * rest(psi) over a whole turn, where peak may be
-// so sharp that nothing but its maxima counts.
-template <class Peak, class Rest>
-double logIntegralOfPeaks(const Peak& peak, const Rest& rest) {
-  constexpr int kGrid = 4096;
-  std::vector<double> e(kGrid);
-  for (int i = 0; i < kGrid; ++i) e[static_cast<size_t>(i)] = peak(2 * kPid * i / kGrid);
-  const auto at = [&](int i) { return e[static_cast<size_t>((i + kGrid) % kGrid)]; };
-  const double top = *std::max_element(e.begin(), e.end());
-  if (top - *std::min_element(e.begin(), e.end()) < 1) {  // flat: the trapezoidal rule of a periodic function
-    constexpr int kCoarse = 256;
-    double sum = 0;
-    for (int i = 0; i < kCoarse; ++i) {
-      const double v = 2 * kPid * i / kCoarse;
-      sum += std::exp(peak(v) - top) * rest(v) * (2 * kPid / kCoarse);
-    }
-    return top + std::log(sum);
-  }
-  std::vector<int> maxima;
-  for (int i = 0; i < kGrid; ++i)
-    if (at(i) > at(i - 1) && at(i) >= at(i + 1) && at(i) >= top - 700) maxima.push_back(i);
-  boost::math::quadrature::tanh_sinh<double> quadrature(12);
-  double sum = 0, scale = -kInfinity;
-  std::vector<double> exact;
-  for (int i : maxima) {
-    const double step = 2 * kPid / kGrid;
-    const auto [x, y] =
-        boost::math::tools::brent_find_minima([&](double v) { return -peak(v); }, (i - 1) * step, (i + 1) * step, 50);
-    exact.push_back(x);
-    scale = std::max(scale, -y);
-  }
-  constexpr double kBeyond = 1e12;  // there the logarithm's own rounding is more than what the peak's width adds
-  if (scale > kBeyond) return scale;
-  for (size_t k = 0; k < maxima.size(); ++k)
-    for (int side : {-1, 1}) {
-      // to the lowest point on the way to the neighbouring maximum
-      const size_t n = maxima.size(), other = (k + (side > 0 ? 1 : n - 1)) % n;
-      int steps = side * (maxima[other] - maxima[k]);
-      if (steps <= 0) steps += kGrid;
-      int lowest = 0;
-      for (int s = 0; s <= steps; ++s)
-        if (at(maxima[k] + side * s) < at(maxima[k] + side * lowest)) lowest = s;
-      const double length = std::abs(2 * kPid * (maxima[k] + side * lowest) / kGrid - exact[k]);
-      sum += quadrature.integrate(
-          [&](double d) {
-            const double v = exact[k] + side * d, weight = peak(v) - scale;
-            return weight < -700 ? 0.0 : std::exp(weight) * rest(v);
-          },
-          0.0, length, 1e-9);
-    }
-  return scale + std::log(sum);
-}
-
 class WardFull final : public Case {
  public:
   explicit WardFull(const StudyInput& input)
@@ -161,7 +108,9 @@ class WardFull final : public Case {
              2, breaks}};
   }
 
-  double outside(int i) const override { return technique(i) == StudyTechnique::kLobe ? disk_.below() : 0; }
+  double logOutside(int i) const override {
+    return technique(i) == StudyTechnique::kLobe ? disk_.logBelow() : -kInfinity;
+  }
 
   // f^2/p_1 dwi = f^2 (dwi/d(r^2) dpsi)^2 2 pi e^E: with y = E_max - E, e^E_max times a plain integral over y.
   double logSecondMomentAtEdge(int i) const override {
@@ -240,11 +189,13 @@ class PhongFull final : public Case {
     return charts;
   }
 
-  double outside(int i) const override {
-    if (technique(i) != StudyTechnique::kLobe) return 0;
-    return boost::math::quadrature::gauss_kronrod<double, 61>::integrate(
-               [this](double chi) { return std::pow(std::cos(horizon(chi)), m_ + 1); }, kPid / 2, kPid, 20, 1e-13) /
-           kPid;
+  // 1/pi times the integral of cos(horizon)^(m + 1), whose largest value is sin(theta_o)^(m + 1)
+  double logOutside(int i) const override {
+    if (technique(i) != StudyTechnique::kLobe || !(so_ > 0)) return -kInfinity;
+    const double rest = boost::math::quadrature::gauss_kronrod<double, 61>::integrate(
+        [this](double chi) { return std::pow(std::max(0.0, std::cos(horizon(chi))) / so_, m_ + 1); }, kPid / 2, kPid,
+        20, 1e-13);
+    return (m_ + 1) * std::log(so_) + std::log(rest / kPid);
   }
 
   double logSecondMomentAtEdge(int i) const override {
@@ -302,7 +253,7 @@ class WardPlanar final : public Case {
     return {{[this](double u, double) { return at(0, s0_, u); }, 1},
             {[this](double u, double) { return at(0, s1_, u); }, 1}};
   }
-  double outside(int) const override { return 0; }
+  double logOutside(int) const override { return -kInfinity; }
   double lobeNormalization() const override { return std::exp(logZ_); }
 
   double logSecondMomentAtEdge(int i) const override {
@@ -424,7 +375,7 @@ class PhongPlanar final : public Case {
              },
              1}};
   }
-  double outside(int) const override { return 0; }
+  double logOutside(int) const override { return -kInfinity; }
   double logSecondMomentAtEdge(int i) const override {
     return technique(i) == StudyTechnique::kLobe && input_.joint && input_.rhoD > 0 && m_ >= 5 ? kInfinity : kNaN;
   }

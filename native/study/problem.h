@@ -36,8 +36,8 @@ class Problem {
  public:
   virtual ~Problem() = default;
   virtual std::vector<Chart> charts() const = 0;
-  // Probability that a sample of the technique falls outside the domain (below the horizon).
-  virtual double outside(int technique) const = 0;
+  // ln of the probability that a sample of the technique falls outside the domain (below the horizon).
+  virtual double logOutside(int technique) const = 0;
   // ln of the integral of f^2/p_i where it is dominated by the edge of the domain, which the charts do not resolve;
   // NaN where they do.
   virtual double logSecondMomentAtEdge(int technique) const = 0;

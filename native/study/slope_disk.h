@@ -10,6 +10,7 @@
 
 #include "math/number.h"
 #include "math/vec.h"
+#include "study/peaks.h"
 
 namespace wardmis {
 
@@ -46,16 +47,13 @@ class SlopeDisk {
     return {r * r, slope, ci, hz, 2 * hz / slope * ax_ * ay_};
   }
 
-  // Probability that a sample of the lobe lies below the horizon. Between the breaks: over the whole turn, the
-  // quadrature would miss what happens within 1e-5 of it.
-  double below() const {
-    constexpr double turn = 2 * kPi<double>;
-    const std::vector<double> v = breaks(turn);
-    double sum = 0;
-    for (size_t i = 0; i + 1 < v.size(); ++i)
-      sum += boost::math::quadrature::gauss_kronrod<double, 31>::integrate(
-          [this](double x) { return std::exp(-square(ringAt(turn * x).rMax)); }, v[i], v[i + 1], 6, 1e-11);
-    return sum;
+  // ln of the probability that a sample of the lobe lies below the horizon, which may be 10^-100000.
+  double logBelow() const {
+    constexpr double kLeast = 1e-290;
+    const double plain = below();
+    if (plain > kLeast) return std::log(plain);
+    return logIntegralOfPeaks([this](double psi) { return -square(ringAt(psi).rMax); }, [](double) { return 1.0; }) -
+           std::log(2 * kPi<double>);
   }
 
   // In psi/turn, between the first cells of a quadrature: cells that grow from where the horizon's distance or the
@@ -80,6 +78,17 @@ class SlopeDisk {
   }
 
  private:
+  // Between the breaks: over the whole turn, the quadrature would miss what happens within 1e-5 of it.
+  double below() const {
+    constexpr double turn = 2 * kPi<double>;
+    const std::vector<double> v = breaks(turn);
+    double sum = 0;
+    for (size_t i = 0; i + 1 < v.size(); ++i)
+      sum += boost::math::quadrature::gauss_kronrod<double, 31>::integrate(
+          [this](double x) { return std::exp(-square(ringAt(turn * x).rMax)); }, v[i], v[i + 1], 6, 1e-11);
+    return sum;
+  }
+
   bool isotropic_;
   double ax_, ay_, so_, co_, cosPhi_ = 1, sinPhi_ = 0;
 };

@@ -55,7 +55,7 @@ class LobeProblem final : public Problem {
              },
              2, disk_.breaks(turn)}};
   }
-  double outside(int) const override { return disk_.below(); }
+  double logOutside(int) const override { return disk_.logBelow(); }
   double logSecondMomentAtEdge(int) const override { return std::nan(""); }
   void sample(int, Stream&, SampleBlock&, size_t, size_t) const override {}  // chiSquareOfLobe has its own
 
@@ -75,7 +75,7 @@ void integrateLobe(const WardFunctions<Extended>& tested, const StudyInput& inpu
   const auto f = [](const Point& x) { return x.f; };
   report.mass = points.integrate(pdf), report.albedo = points.integrate(f);
   report.quadrature = std::max(relativeError(points, pdf), relativeError(points, f));
-  report.below = problem.outside(0);
+  report.below = std::exp(problem.logOutside(0));
 }
 
 namespace {

@@ -126,7 +126,7 @@ Points pooled(const Trial& t, const Counts& count) {
         below[at(i)] += 1;
     }
   for (int i = 0; i < t.techniques; ++i)
-    if (count[at(i)] > 0) points.outside[at(i)] = below[at(i)] / count[at(i)];
+    if (count[at(i)] > 0) points.setOutside(at(i), std::log(below[at(i)] / count[at(i)]));
   return points;
 }
 

@@ -201,7 +201,7 @@ class Biased final : public Problem {
  public:
   explicit Biased(const StudyInput& input) : Problem(input), right_(makeProblem(input)) {}
   std::vector<Chart> charts() const override { return right_->charts(); }
-  double outside(int i) const override { return right_->outside(i); }
+  double logOutside(int i) const override { return right_->logOutside(i); }
   double logSecondMomentAtEdge(int i) const override { return right_->logSecondMomentAtEdge(i); }
   void sample(int i, Stream& random, SampleBlock& block, size_t first, size_t last) const override {
     right_->sample(i, random, block, first, last);
