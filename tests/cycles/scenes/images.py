@@ -1,0 +1,368 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Image textures: what is stored, how it is looked up, and what alpha does. Seen from above under a white sky: the image is the picture."""
+
+import bpy
+import numpy as np
+from stage import add, checker, diffuse, face_on, feed, gradient, image, painted, saved_image, scene, sheet
+
+CORNERS = checker((0.9, 0.1, 0.1), (0.1, 0.8, 0.2), (0.1, 0.2, 0.9), (0.8, 0.8, 0.1))
+
+
+def shows(picture, settings=None, output="Color", mapping=None, uv_map=None):
+    """A sheet with this image, seen from above."""
+    face_on()
+    sheet(painted(lambda tree: texture(tree, picture, settings, mapping, uv_map).outputs[output]))
+
+
+def texture(tree, picture, settings=None, mapping=None, uv_map=None):
+    node = add(tree, "TexImage", {"image": picture, **(settings or {})})
+    if uv_map is not None:
+        vector = add(tree, "UVMap", {"uv_map": uv_map}).outputs[0]
+    else:
+        vector = add(tree, "TexCoord").outputs["UV"]
+    if mapping is not None:
+        kind, inputs = mapping
+        mapped = add(tree, "Mapping", {"vector_type": kind}, Vector=vector)
+        for name, value in inputs.items():
+            if mapped.inputs[name].enabled:
+                feed(tree, mapped.inputs[name], value)
+        vector = mapped.outputs[0]
+    tree.links.new(vector, node.inputs["Vector"])
+    return node
+
+
+def with_alpha(value=0.25):
+    """Alpha from 0 to 1 over the picture, and in its other half one number."""
+    pixels = np.concatenate([gradient(), np.full((8, 8, 1), value)], axis=-1)
+    pixels[:4, :, 3] = np.linspace(0, 1, 8)
+    return pixels
+
+
+@scene
+def colors():
+    shows(image("Colours", gradient()))
+
+
+@scene
+def floats():
+    shows(image("Floats", 2 * gradient() - 0.3, floats=True))
+
+
+@scene
+def file_8_bits():
+    shows(saved_image("eight", gradient()))
+
+
+@scene
+def file_16_bits():
+    shows(saved_image("sixteen", gradient(), depth="16"))
+
+
+@scene
+def file_exr():
+    shows(saved_image("half", 1.5 * gradient(), "exr"))
+
+
+@scene
+def non_color():
+    picture = saved_image("raw", gradient())
+    picture.colorspace_settings.name = "Non-Color"
+    shows(picture)
+
+
+@scene
+def missing():
+    """Magenta, there as here."""
+    picture = bpy.data.images.new("gone", 4, 4)
+    picture.source, picture.filepath = "FILE", "//no-such-file.png"
+    shows(picture)
+
+
+@scene
+def no_image():
+    shows(None)
+
+
+@scene
+def linear():
+    """Two pixels across: what lies between them shows in which space they are mixed."""
+    shows(image("Corners", CORNERS))
+
+
+@scene
+def closest():
+    shows(image("Corners", CORNERS), {"interpolation": "Closest"})
+
+
+@scene
+def cubic():
+    shows(image("Corners", CORNERS), {"interpolation": "Cubic"})
+
+
+@scene
+def smart():
+    shows(image("Corners", CORNERS), {"interpolation": "Smart"})
+
+
+def alpha(mode, output="Color", suffix="png"):
+    picture = saved_image(f"alpha-{mode}", with_alpha(), suffix)
+    picture.alpha_mode = mode
+    shows(picture, output=output)
+
+
+@scene
+def alpha_straight():
+    alpha("STRAIGHT")
+
+
+@scene
+def alpha_premultiplied():
+    alpha("PREMUL")
+
+
+@scene
+def alpha_channel_packed():
+    alpha("CHANNEL_PACKED")
+
+
+@scene
+def alpha_none():
+    alpha("NONE")
+
+
+@scene
+def alpha_exr():
+    alpha("PREMUL", suffix="exr")
+
+
+@scene
+def alpha_exr_straight():
+    alpha("STRAIGHT", suffix="exr")
+
+
+@scene
+def alpha_alone():
+    alpha("STRAIGHT", output="Alpha")
+
+
+@scene
+def alpha_with_color():
+    """Where alpha is used, the colour is not multiplied by it."""
+    face_on()
+    picture = saved_image("both", with_alpha())
+
+    def build(tree):
+        node = texture(tree, picture)
+        return add(
+            tree,
+            "MixRGB",
+            {"blend_type": "MIX"},
+            Fac=node.outputs["Alpha"],
+            Color1=(0.2, 0.2, 0.2, 1),
+            Color2=node.outputs["Color"],
+        ).outputs[0]
+
+    sheet(painted(build))
+
+
+def extended(mode):
+    shows(
+        image("Corners", CORNERS),
+        {"extension": mode},
+        mapping=("POINT", {"Scale": (1.8, 1.8, 1), "Location": (-0.4, -0.3, 0)}),
+    )
+
+
+@scene
+def repeat():
+    extended("REPEAT")
+
+
+@scene
+def extend():
+    extended("EXTEND")
+
+
+@scene
+def clip():
+    extended("CLIP")
+
+
+@scene(since=(4, 0))
+def mirror():
+    extended("MIRROR")
+
+
+MAPPED = {"Location": (0.2, -0.1, 0.3), "Rotation": (0.1, 0.2, 0.7), "Scale": (1.5, 0.7, 2)}
+
+
+@scene
+def mapping_point():
+    shows(image("Colours", gradient(4, 4)), mapping=("POINT", MAPPED))
+
+
+@scene
+def mapping_texture():
+    shows(image("Colours", gradient(4, 4)), mapping=("TEXTURE", MAPPED))
+
+
+@scene
+def mapping_vector():
+    shows(image("Colours", gradient(4, 4)), mapping=("VECTOR", MAPPED))
+
+
+@scene
+def mapping_normal():
+    shows(image("Colours", gradient(4, 4)), mapping=("NORMAL", MAPPED))
+
+
+@scene
+def own_mapping():
+    """Of the image node itself, which the interface hides: files of old have it."""
+    face_on()
+
+    def build(tree):
+        node = texture(tree, image("Colours", gradient(4, 4)))
+        node.texture_mapping.scale, node.texture_mapping.translation = (1.4, 0.6, 1), (0.2, 0.1, 0)
+        node.texture_mapping.rotation = 0, 0, 0.5
+        return node.outputs["Color"]
+
+    sheet(painted(build))
+
+
+@scene
+def own_colors():
+    face_on()
+
+    def build(tree):
+        node = texture(tree, image("Colours", gradient(4, 4)))
+        node.color_mapping.brightness, node.color_mapping.contrast, node.color_mapping.saturation = 0.7, 1.4, 0.5
+        return node.outputs["Color"]
+
+    sheet(painted(build))
+
+
+@scene
+def second_map():
+    face_on()
+    picture = image("Colours", gradient(4, 4))
+    sheet(painted(lambda tree: texture(tree, picture, uv_map="Turned").outputs["Color"]), maps=("UVMap", "Turned"))
+
+
+@scene
+def active_map():
+    """The map that is chosen for rendering, not the first one."""
+    face_on()
+    picture = image("Colours", gradient(4, 4))
+    made = sheet(painted(lambda tree: texture(tree, picture).outputs["Color"]), maps=("UVMap", "Turned"))
+    made.data.uv_layers["Turned"].active_render = True
+
+
+@scene
+def sequence():
+    """The frame's own file."""
+    for frame in (1, 2, 3):
+        bpy.data.images.remove(saved_image(f"frame_{frame:04d}", gradient() * frame / 3))
+    picture = bpy.data.images.load(f"{bpy.app.tempdir}/frame_0001.png")
+    picture.source = "SEQUENCE"
+    bpy.context.scene.frame_set(2)
+    face_on()
+
+    def build(tree):
+        node = texture(tree, picture)
+        node.image_user.frame_duration, node.image_user.frame_start, node.image_user.use_auto_refresh = 3, 1, True
+        return node.outputs["Color"]
+
+    sheet(painted(build))
+
+
+@scene
+def udim_of_one_tile():
+    bpy.data.images.remove(saved_image("tile.1001", gradient()))
+    picture = bpy.data.images.load(f"{bpy.app.tempdir}/tile.1001.png")
+    picture.source = "TILED"
+    shows(picture)
+
+
+@scene
+def generated():
+    """Blender's own grid of colours."""
+    picture = bpy.data.images.new("Grid", 32, 32)
+    picture.source, picture.generated_type = "GENERATED", "COLOR_GRID"
+    shows(picture)
+
+
+@scene
+def generated_plain():
+    picture = bpy.data.images.new("Plain", 32, 32)
+    picture.source, picture.generated_color = "GENERATED", (0.3, 0.5, 0.7, 1)
+    shows(picture)
+
+
+def mixed(tree, factor, first, second):
+    return add(tree, "MixRGB", Fac=factor, Color1=first, Color2=second).outputs[0]
+
+
+@scene
+def mixes_either_way():
+    """Two materials that mix one image with white, one this way and one that way round."""
+    face_on()
+    picture, white = image("Colours", gradient(4, 4)), (1, 1, 1, 1)
+    for x, swapped in ((-1, False), (1, True)):
+
+        def build(tree, swapped=swapped):
+            color = texture(tree, picture).outputs["Color"]
+            return mixed(tree, 0.3, white, color) if swapped else mixed(tree, 0.3, color, white)
+
+        made = sheet(painted(build), size=0.95)
+        made.location.x = x
+
+
+@scene
+def two_images():
+    """Products and sums of two pictures with one set of coordinates."""
+    face_on()
+    first, second = image("One", gradient(4, 4)), image("Two", gradient(4, 4)[::-1])
+    sheet(painted(lambda tree: mixed(tree, 0.4, texture(tree, first).outputs[0], texture(tree, second).outputs[0])))
+
+
+def ramp(tree, value, stops):
+    node = add(tree, "ValToRGB", Fac=value)
+    elements = node.color_ramp.elements
+    while len(elements) < len(stops):
+        elements.new(0.5)
+    for element, (position, color) in zip(elements, stops):
+        element.position, element.color = position, (*color, 1)
+    return node.outputs["Color"]
+
+
+@scene
+def ramps():
+    """Two ramps that agree at every sixteenth of their length and differ between."""
+    face_on()
+    picture = image("Colours", gradient(16, 16))
+    black, white = (0, 0, 0), (1, 1, 1)
+    for x, color in ((-1, white), (1, (1, 0.3, 0))):
+        stops = [(0.2, black), (0.4501, black), (0.46, color), (0.49, color), (0.4999, black), (0.8, (0.5, 0.5, 0.5))]
+
+        def build(tree, stops=stops):
+            return ramp(
+                tree, add(tree, "SeparateColor", Color=texture(tree, picture).outputs["Color"]).outputs[0], stops
+            )
+
+        made = sheet(painted(build), size=0.95)
+        made.location.x = x
+
+
+@scene
+def emissive():
+    """An image that shines."""
+    from stage import material
+
+    face_on()
+    made, tree, output = material()
+    shader = add(tree, "Emission", Color=texture(tree, image("Colours", gradient(4, 4))).outputs["Color"], Strength=2.0)
+    tree.links.new(shader.outputs[0], output.inputs["Surface"])
+    sheet(made, divisions=8, size=1.2)
+    ground = sheet(diffuse(), size=3)
+    ground.location.z = -0.5

@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Things that are shown more than once."""
+
+import bpy
+import numpy as np
+from stage import ball, box, collection, diffuse, gradient, instance, lamp, mesh, painted, place, scene, square, stage
+from wardmis import compat
+
+
+def boxes():
+    return collection(
+        "Boxes",
+        box(diffuse((0.7, 0.3, 0.2)), location=(0, 0, 0.4), scale=(0.3, 0.3, 0.4)),
+        ball(diffuse((0.2, 0.4, 0.7)), location=(0.5, 0.3, 0.3), radius=0.3, fineness=24),
+    )
+
+
+@scene
+def collections():
+    stage()
+    group = boxes()
+    for i, (x, y, size) in enumerate(((1.3, 0.4, 1.6), (0.5, -1.4, 1), (-1.5, 1.2, 2), (-1.2, -1, 1.2))):
+        instance(group, (x, y, 0), (0.1 * i, 0, 0.5 * i), (size, size, 0.8 * size))
+
+
+@scene
+def nested_collections():
+    stage()
+    inner = boxes()
+    pair = collection("Pair", instance(inner, (-0.7, 0, 0)), instance(inner, (0.7, 0, 0), (0, 0, 1), (1, 1, 2)))
+    pair.instance_offset = 0.2, 0.1, 0
+    instance(pair, (-1.5, 0.5, 0), (0, 0, 0.4))
+    instance(pair, (1.2, -0.8, 0), (0, 0, -0.4), (0.8, 1.2, 1))
+
+
+@scene
+def lamps():
+    stage()
+    box(scale=(0.5, 0.5, 0.5), location=(0, 0, 0.5))
+    group = collection(
+        "Lamps", lamp("POINT", (0, 0, 1.5), 30, (1, 0.2, 0.2)), lamp("AREA", (0.5, 0, 2), 20, (0.2, 1, 0.2), size=0.3)
+    )
+    instance(group, (-1.5, -1, 0))
+    instance(group, (1.5, 0, 0), (0, 0, 1), (1, 1, 0.7))
+
+
+@scene
+def of_vertices():
+    stage()
+    parent = mesh("Parent", *square(1.5))
+    parent.location.z = 0.01
+    child = box(diffuse((0.3, 0.6, 0.3)), location=(0, 0, 0.4), scale=(0.3, 0.2, 0.4))
+    child.parent = parent
+    parent.instance_type, parent.use_instance_vertices_rotation = "VERTS", True
+
+
+@scene
+def of_faces():
+    stage()
+    parent = box(location=(0, 0, 0.8), scale=(0.8, 0.6, 0.8))
+    child = ball(diffuse((0.6, 0.3, 0.3)), location=(0, 0, 0), radius=0.4, fineness=24)
+    child.parent = parent
+    parent.instance_type, parent.use_instance_faces_scale, parent.instance_faces_scale = "FACES", True, 0.5
+    parent.show_instancer_for_render = True
+
+
+@scene
+def hidden_instancer():
+    stage()
+    parent = box(location=(0, 0, 0.8), scale=(0.8, 0.6, 0.8))
+    child = ball(diffuse((0.6, 0.3, 0.3)), location=(0, 0, 0), radius=0.4, fineness=24)
+    child.parent = parent
+    parent.instance_type, parent.show_instancer_for_render = "VERTS", False
+
+
+def particles(made, **settings):
+    made.modifiers.new("Particles", "PARTICLE_SYSTEM")
+    data = made.particle_systems[0].settings
+    data.count, data.frame_start, data.frame_end, data.lifetime = 30, 1, 1, 200
+    data.physics_type, data.emit_from, data.particle_size, data.size_random = "NO", "FACE", 0.15, 0.5
+    data.use_rotations, data.rotation_factor_random = True, 0.5
+    for name, value in settings.items():
+        setattr(data, name, value)
+    bpy.context.scene.frame_set(10)
+    return made
+
+
+@scene
+def particle_objects():
+    stage()
+    made = particles(mesh("Emitter", *square(2)), render_type="OBJECT", instance_object=box(location=(0, 0, -5)))
+    made.location.z, made.show_instancer_for_render = 0.2, True
+
+
+@scene
+def particle_collections():
+    stage()
+    group = boxes()
+    made = particles(
+        mesh("Emitter", *square(2)), render_type="COLLECTION", instance_collection=group, particle_size=0.6
+    )
+    made.location.z, made.show_instancer_for_render = 0.1, False
+
+
+@scene
+def hair_objects():
+    """Hair of objects in strands' places."""
+    stage()
+    made = mesh("Emitter", *square(2))
+    made.location.z = 0.05
+    particles(
+        made,
+        type="HAIR",
+        render_type="OBJECT",
+        instance_object=box(location=(0, 0, -5)),
+        particle_size=0.1,
+        use_advanced_hair=True,
+    )
+
+
+def geometry_nodes(made, build):
+    """A modifier whose geometry is the socket that build(tree, geometry socket) returns."""
+    tree = bpy.data.node_groups.new("Geometry", "GeometryNodeTree")
+    for way in ("INPUT", "OUTPUT"):
+        compat.add_group_socket(tree, "Geometry", "NodeSocketGeometry", way)
+    entry, end = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
+    tree.links.new(build(tree, entry.outputs[0]), end.inputs[0])
+    made.modifiers.new("Geometry", "NODES").node_group = tree
+
+
+@scene
+def geometry_node_instances():
+    """On points of a grid, with the grid itself."""
+    stage()
+    shown = box(diffuse((0.3, 0.3, 0.7)), location=(0, 0, -5), scale=(0.25, 0.15, 0.3))
+
+    def build(tree, geometry):
+        points = tree.nodes.new("GeometryNodeInstanceOnPoints")
+        source, joined = tree.nodes.new("GeometryNodeObjectInfo"), tree.nodes.new("GeometryNodeJoinGeometry")
+        source.inputs["Object"].default_value = shown
+        tree.links.new(geometry, points.inputs["Points"])
+        tree.links.new(source.outputs["Geometry"], points.inputs["Instance"])
+        points.inputs["Rotation"].default_value = 0.2, 0.1, 0.5
+        points.inputs["Scale"].default_value = 1, 1.5, 1
+        tree.links.new(points.outputs[0], joined.inputs[0])
+        tree.links.new(geometry, joined.inputs[0])
+        return joined.outputs[0]
+
+    made = ball(location=(0, 0, 1), radius=1, fineness=4)
+    geometry_nodes(made, build)
+
+
+@scene
+def shared_mesh_other_materials():
+    """One mesh, two objects, a material of each object."""
+    stage()
+    first = box(location=(-1.3, 0, 1), scale=(0.7, 0.7, 1))
+    twin = place("Twin", first.data, (1.3, 0, 1), (0, 0, 0.7), (0.7, 0.7, 1))
+    for made, color in ((first, (0.8, 0.3, 0.2)), (twin, (0.2, 0.3, 0.8))):
+        made.material_slots[0].link = "OBJECT"
+        made.material_slots[0].material = diffuse(color)
+
+
+@scene
+def many():
+    """A thousand, of an array of arrays."""
+    stage()
+    made = box(location=(-2, -1.2, 0.1), scale=(0.08, 0.08, 0.1), rotation=(0, 0, 0.1))
+    for axis, count in enumerate((20, 10, 5)):
+        array = made.modifiers.new("Array", "ARRAY")
+        array.count, array.use_relative_offset, array.use_constant_offset = count, False, True
+        array.constant_offset_displace = tuple(np.eye(3)[axis] * 3)
+
+
+@scene
+def textured():
+    """Instances keep the mesh's UV map."""
+    from stage import add, image, sheet
+
+    stage()
+    picture = image("Colours", gradient(4, 4))
+    group = collection(
+        "Sheets", sheet(painted(lambda tree: add(tree, "TexImage", {"image": picture}).outputs[0]), size=0.7)
+    )
+    instance(group, (-1, 0, 0.8), (0.9, 0, 0.2))
+    instance(group, (1, 0, 0.8), (0.9, 0, -0.2), (-1, 1, 1))
