@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -11,9 +12,13 @@ import bpy
 from bpy.props import StringProperty
 from bpy_extras.io_utils import ExportHelper
 
+from . import second_blender
 from .engine import WARDMIS_RenderEngine, scene_export_to
 from .export import ExportError, export_depsgraph
 from .export.target import check_target
+from .process import Renderer, RendererError
+
+WAIT_SECONDS = 0.1
 
 
 def export_scene(path: str | os.PathLike[str], depsgraph: Any = None) -> None:
@@ -26,13 +31,38 @@ def export_scene(path: str | os.PathLike[str], depsgraph: Any = None) -> None:
         check_target(path)  # before Blender evaluates the scene, which may take long
         if depsgraph is not None:
             export_depsgraph(depsgraph, path)
+        elif second_blender.wanted():
+            _export_by_second_blender(path)
         else:
             _export_by_render(path)
-    except ExportError as error:
+    except (ExportError, RendererError) as error:
         raise RuntimeError(f"WardMIS: {error}") from error
 
 
+def export_command(blend: Path, place: dict[str, str], percentage: int, path: Path) -> list[str]:
+    """Of the second Blender, for the export of its copy, at `percentage` of the resolution."""
+    return second_blender.command(blend, place, "operators", percentage=percentage, path=str(path))
+
+
+def run_task(_tell: second_blender.Tell, percentage: int, path: str) -> None:
+    bpy.context.scene.render.resolution_percentage = percentage
+    export_scene(path)
+
+
+def _export_by_second_blender(path: Path) -> None:
+    with tempfile.TemporaryDirectory(prefix="wardmis-", dir=bpy.app.tempdir) as folder:
+        blend = second_blender.save_copy(Path(folder))[0]
+        percentage = bpy.context.scene.render.resolution_percentage
+        with Renderer(
+            export_command(blend, second_blender.place(bpy.context), percentage, path), second_blender.NAME
+        ) as process:
+            while process.running():
+                process.events(WAIT_SECONDS)
+            process.finish()
+
+
 def _export_by_render(path: Path) -> None:
+    """By Blender's render operator, which alone evaluates a scene as for a render; the image of the last render is lost."""
     scene, layer = bpy.context.scene, bpy.context.view_layer
     engine = scene.render.engine
     try:

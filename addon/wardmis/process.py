@@ -20,6 +20,7 @@ BINARY = "wardmis.exe" if os.name == "nt" else "wardmis"
 PACKAGED = Path(__file__).parent / "bin" / BINARY
 VARIABLE = "WARDMIS_BINARY"
 GRACE_SECONDS = 1.0
+STOPPED = 130  # the exit code of what the user has stopped
 
 
 class RendererError(Exception):

@@ -18,12 +18,14 @@ import numpy as np
 import wardmis
 from comparison_support import SMALL, ComparisonTest
 from support import ADDON
+from wardmis import compat, scripting, second_blender
 from wardmis import layout as panel_layout
-from wardmis import scripting
 from wardmis.comparison import colours, images, job, operators, panels, plot, properties
 from wardmis.comparison.exr import read_pass
+from wardmis.comparison.overrides import overridden
 from wardmis.comparison.report import VERDICTS, Report
 from wardmis.comparison.run import divide
+from wardmis.comparison.same_scene import same_but_for_rounding
 
 
 class PanelTest(ComparisonTest):
@@ -213,6 +215,84 @@ class Background(PanelTest):
         self.scene.render.engine = "WARDMIS"
 
 
+class SecondBlender(PanelTest):
+    """As in a window, where the second Blender exports."""
+
+    def setUp(self) -> None:
+        super().setUp()
+        patch = mock.patch.object(second_blender, "wanted", lambda: True)
+        patch.start()
+        self.addCleanup(patch.stop)
+
+    def paint(self) -> None:
+        """The floor, on an image that is in no file."""
+        image = bpy.data.images.new("Painted", 4, 4)
+        image.pixels[:] = [0.25, 0.5, 0.75, 1] * 16
+        image.update()
+        self.assertTrue(image.is_dirty)
+        tree = self.material.node_tree
+        texture = tree.nodes.new("ShaderNodeTexImage")
+        texture.image = image
+        tree.links.new(texture.outputs[0], self.shader.inputs[0])
+        self.floor.data.uv_layers.new()
+
+    def test_it_exports_what_the_first_one_would(self):
+        self.paint()
+        self.folder.mkdir()
+        first, second = self.folder / "first.glb", self.folder / "second.glb"
+        with mock.patch.object(second_blender, "wanted", lambda: False):
+            wardmis.export_scene(first)
+        wardmis.export_scene(second)
+        self.assertTrue(same_but_for_rounding(first, second))
+
+    def test_the_last_render_stays(self):
+        self.scene.render.engine = "CYCLES"
+        self.scene.cycles.samples, self.scene.cycles.use_denoising = 1, False
+        bpy.ops.render.render()
+
+        def last_render() -> np.ndarray:
+            path = self.folder.parent / "last.exr"
+            settings = self.scene.render.image_settings
+            with overridden(compat.multilayer_exr(settings)):
+                bpy.data.images["Render Result"].save_render(str(path), scene=self.scene)
+            return read_pass(path)
+
+        before = last_render()
+        self.assertGreater(before[..., :3].max(), 0)
+        self.folder.mkdir()
+        wardmis.export_scene(self.folder / "scene.glb")
+        np.testing.assert_array_equal(last_render(), before)
+        self.settings.use_cycles = True
+        self.compare()
+        np.testing.assert_array_equal(last_render(), before)
+
+    def test_the_first_goes_on_while_it_exports(self):
+        """What is changed meanwhile belongs to the next comparison."""
+        self.assertEqual(bpy.ops.wardmis.compare(), {"FINISHED"})
+        self.settings.seeds, self.settings.folder = 5, "/nowhere"
+        self.camera.location.z = 7
+        done = self.wait()
+        self.assertEqual((done.failure, done.folder.parent), ("", self.folder))
+        arguments = self.calls()[-1]
+        self.assertEqual(arguments[arguments.index("--seeds") + 1], "2")
+        self.assertEqual(list((Path(bpy.app.tempdir) / "wardmis-comparison").iterdir()), [])
+
+    def test_failures_are_told(self):
+        self.scene.camera = None
+        self.folder.mkdir()
+        with self.assertRaisesRegex(RuntimeError, "WardMIS: the second Blender failed .*camera"):
+            wardmis.export_scene(self.folder / "scene.glb")
+        bpy.ops.wardmis.compare()
+        self.assertRegex(self.wait().failure, "the export failed .*camera")
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_cancel_while_it_exports(self):
+        bpy.ops.wardmis.compare()
+        bpy.ops.wardmis.compare_cancel()
+        done = self.wait(10)
+        self.assertEqual((done.failure, done.stopping, done.folder), ("", True, None))
+
+
 class Failures(PanelTest):
     def test_of_the_renderer_are_shown(self):
         with mock.patch.dict(os.environ, {"WARDMIS_FAKE": "exit3"}):
@@ -221,7 +301,7 @@ class Failures(PanelTest):
         self.assertIn("bufferViews[0]: lies beyond the file", done.failure)
 
     def test_of_cycles_name_it(self):
-        current = job.start(self.folder, [job.Stage("Cycles", ["/bin/false"])], operators._finished, [])
+        current = job.start(lambda _: [job.Stage("Cycles", ["/bin/false"])], operators._finished, [])
         self.wait()
         self.assertIn("Cycles failed (exit code 1)", current.failure)
 
@@ -232,16 +312,6 @@ class Failures(PanelTest):
         self.settings.allocations = {"equal"}
         self.folder.write_text("a file")
         with self.assertRaisesRegex(RuntimeError, "cannot be written: .*choose another in the panel"):
-            bpy.ops.wardmis.compare()
-
-    def test_painted_images_are_not_lost_to_cycles(self):
-        painted = bpy.data.images.new("Painted", 4, 4)
-        painted.pixels[0] = 0.5
-        painted.use_fake_user = True
-        painted.update()
-        self.assertTrue(painted.is_dirty)
-        self.settings.use_cycles = True
-        with self.assertRaisesRegex(RuntimeError, "image 'Painted' has changes that Cycles would not see"):
             bpy.ops.wardmis.compare()
 
     def test_folder_without_results(self):

@@ -16,8 +16,9 @@ from typing import Any
 
 import bpy
 
+from ..process import STOPPED
 from . import interrupt
-from .converge import DEFAULT_CONFIGURATIONS, STOPPED
+from .converge import DEFAULT_CONFIGURATIONS
 from .run import compare
 
 REDRAW_SECONDS = 0.5

@@ -12,7 +12,6 @@ from typing import Any
 
 OWN = "scene"  # the configuration that the scene's own settings are
 DEFAULT_CONFIGURATIONS = ("equal", "variance", "second-moment", "auto")
-STOPPED = 130  # the exit code of a comparison that was stopped
 
 
 def checkpoints(max_spp: int) -> list[int]:

@@ -16,7 +16,7 @@ import socket
 import threading
 from collections.abc import Callable, Iterator
 
-from .converge import STOPPED
+from ..process import STOPPED
 
 
 class Stopped(RuntimeError):

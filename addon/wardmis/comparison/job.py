@@ -15,9 +15,8 @@ from typing import Any
 
 import bpy
 
-from ..process import Renderer, RendererError
+from ..process import STOPPED, Renderer, RendererError
 from .command_line import progress_text
-from .converge import STOPPED
 
 LOOK_SECONDS = 0.25
 SHOWN_IN = {"PROPERTIES", "IMAGE_EDITOR"}
@@ -30,35 +29,31 @@ class Stage:
     name: str  # what messages call it
     command: list[str]
     explain: Callable[[str], str] = str  # what a failure says, to its user
+    then: Callable[[Job], list[Stage]] | None = None  # once it has ended well: what comes next, before all others
 
 
 class Job:
     def __init__(
-        self,
-        folder: Path,
-        stages: list[Stage],
-        finished: Callable[[Job], None],
-        temporary: list[Path],
-        failed: Callable[[], None] | None = None,
+        self, begin: Callable[[Job], list[Stage]], finished: Callable[[Job], None], temporary: list[Path]
     ) -> None:
-        """`finished` is called once all has ended well, or was stopped; `temporary` are files to be removed at the end."""
-        self.folder = folder
+        """`begin` gives the first stages, and may set `folder` and `failed`; so may a stage's `then`. `finished` is called once all
+        has ended well, or was stopped; `temporary` are files to be removed at the end."""
+        self.folder: Path | None = None  # of the results; where it is not known yet, none
+        self.failed: Callable[[], None] = lambda: None  # called after a failure
         self.text = "Starting"
         self.fraction = 0.0
         self.failure = ""  # the message for the user
         self.stopping = False
         self.running = True
-        self._stages = stages
         self._finished = finished
-        self._failed = failed
         self._temporary = temporary
         self._process: Renderer | None = None
-        self._explain: Callable[[str], str] = str
+        self._stages = begin(self)
+        self._stage = self._stages[0]
         self._start_next()
 
     def _start_next(self) -> None:
-        stage = self._stages.pop(0)
-        self._explain = stage.explain
+        stage = self._stage = self._stages.pop(0)
         self.fraction = 0.0
         try:
             self._process = Renderer(stage.command, stage.name)
@@ -86,6 +81,12 @@ class Job:
                     return
         process.stop()
         self._process = None
+        if self._stage.then is not None and not self.stopping:
+            try:
+                self._stages[:0] = self._stage.then(self)
+            except RuntimeError as error:
+                self._fail(str(error))
+                return
         if self._stages and not self.stopping:
             self._start_next()
             return
@@ -105,10 +106,9 @@ class Job:
                 self.text = progress_text(event)
 
     def _fail(self, message: str) -> None:
-        self.failure = self._explain(message)
+        self.failure = self._stage.explain(message)
         self.stop()
-        if self._failed is not None:
-            self._failed()
+        self.failed()
 
     def cancel(self) -> None:
         """Asks the process to end with what it has; a second time ends it."""
@@ -147,17 +147,11 @@ def running() -> bool:
     return _job is not None and _job.running
 
 
-def start(
-    folder: Path,
-    stages: list[Stage],
-    finished: Callable[[Job], None],
-    temporary: list[Path],
-    failed: Callable[[], None] | None = None,
-) -> Job:
+def start(begin: Callable[[Job], list[Stage]], finished: Callable[[Job], None], temporary: list[Path]) -> Job:
     global _job
     if running():
         raise RuntimeError("WardMIS: a comparison is running; wait for it, or cancel it")
-    _job = Job(folder, stages, finished, temporary, failed)
+    _job = Job(begin, finished, temporary)
     if not bpy.app.timers.is_registered(_look):
         bpy.app.timers.register(_look, first_interval=LOOK_SECONDS, persistent=True)
     return _job

@@ -4,22 +4,27 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import hashlib
 import re
 import tempfile
+import types
 from pathlib import Path
 from typing import Any
 
 import bpy
 from bpy.props import EnumProperty, StringProperty
 
+from .. import second_blender
+from ..operators import export_command
 from ..preferences import renderer_path
 from ..process import RendererError
 from ..properties import ALLOCATIONS
 from . import child, images, job, plot, properties
 from .converge import OWN, Outcome, Study, arguments, explain_half
 from .cycles import require_cycles
-from .run import CYCLES_FOLDER, SCENE_NAME, divide, forget, prepare, scene_title, threads_of
+from .overrides import overridden
+from .run import CYCLES_FOLDER, SCENE_NAME, check_study, divide, forget, prepare, scene_title, threads_of
 from .same_scene import same_but_for_rounding, settle
 from .scene_file import read_scene_file
 
@@ -55,48 +60,79 @@ def home(scene: Any) -> Path:
 
 
 def begin(context: Any) -> job.Job:
-    """Exports the scene, and starts what compares it. RuntimeError with a message for the user."""
+    """Starts what exports the scene and compares it. RuntimeError with a message for the user."""
     scene = context.scene
-    settings = scene.wardmis_comparison
-    study = study_of(scene)
-    try:
-        binary = renderer_path()
-    except RendererError as error:
-        raise RuntimeError(f"WardMIS: {error}") from error
-    if settings.use_cycles:
-        require_cycles(scene)
-        _check_unsaved_images()
     staging = Path(bpy.app.tempdir) / "wardmis-comparison"
-    exported = prepare(staging, study).scene
-    folder = _folder(home(scene), study, settings, scene.wardmis, exported)
-    new = not folder.exists()
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        settle(exported, folder / SCENE_NAME)
-    except OSError as error:
-        raise RuntimeError(
-            f"WardMIS: the folder {folder} cannot be written: {error.strerror}; choose another in the panel"
-        ) from error
-    outcome = Outcome(folder, folder / SCENE_NAME)
-    stages, temporary = [], []
+    asked = _Asked(context, staging)
+    files = second_blender.save_copy(staging) if asked.needs_copy else []
+    percentage = asked.percentage
+    if second_blender.wanted():
+        command = export_command(files[0], second_blender.place(context), percentage, staging / SCENE_NAME)
+        stages = [job.Stage("the export", command, then=asked.stages)]
+        return job.start(lambda _job: stages, _finished, files)
+    with overridden([(scene.render, "resolution_percentage", percentage)]):
+        prepare(staging, asked.study)
+    return job.start(asked.stages, _finished, files)
 
-    def own() -> job.Stage:
-        command = [str(binary), *arguments(study, scene.wardmis, outcome)]
-        return job.Stage("the renderer", command, explain_half if settings.use_cycles else str)
 
-    if settings.use_cycles:
+class _Asked:
+    """What the panels say when Compare is pressed, which the user may go on to change."""
+
+    def __init__(self, context: Any, staging: Path) -> None:
+        scene = context.scene
+        self.settings, self.render_settings = _as_it_is(scene.wardmis_comparison), _as_it_is(scene.wardmis)
+        self.study = study_of(scene)
+        check_study(self.study)
+        try:
+            self.binary = renderer_path()
+        except RendererError as error:
+            raise RuntimeError(f"WardMIS: {error}") from error
+        if self.settings.use_cycles:
+            require_cycles(scene)
+        self.home = home(scene)
+        self.percentage = scene.render.resolution_percentage
+        self.staging = staging
+        self.needs_copy = self.settings.use_cycles or second_blender.wanted()
+        self._cycles = functools.partial(
+            child.command, staging / second_blender.COPY, second_blender.place(context), self.percentage
+        )
+
+    def stages(self, comparison: job.Job) -> list[job.Stage]:
+        """Once the scene is exported into the staging folder, which decides where the results go."""
+        settings, study = self.settings, self.study
+        exported = self.staging / SCENE_NAME
+        folder = _folder(self.home, study, settings, self.render_settings, exported)
+        new = not folder.exists()
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            settle(exported, folder / SCENE_NAME)
+        except OSError as error:
+            raise RuntimeError(
+                f"WardMIS: the folder {folder} cannot be written: {error.strerror}; choose another in the panel"
+            ) from error
+        outcome = Outcome(folder, folder / SCENE_NAME)
+        comparison.folder = folder
+        if new:
+            comparison.failed = lambda: forget(outcome)
+        if not settings.use_cycles:
+            return [self._own(study, outcome)]
+        stages = []
         plan, study = divide(study, settings.cycles_seeds, None, settings.cycles_as_is)
-        blend = staging / "scene.blend"
-        bpy.ops.wm.save_as_mainfile(filepath=str(blend), copy=True, compress=False)
-        temporary.append(blend)
         if study.budget_seconds is not None:  # finds out how many samples there are to be
-            stages.append(own())
+            stages.append(self._own(study, outcome))
         renders = folder / CYCLES_FOLDER
         outcome.manifest = renders / "manifest.json"
-        layer = context.view_layer.name
-        stages.append(job.Stage("Cycles", child.command(blend, scene.name, layer, renders, outcome.scene, plan)))
-    stages.append(own())
-    return job.start(folder, stages, _finished, temporary, (lambda: forget(outcome)) if new else None)
+        stages.append(job.Stage("Cycles", self._cycles(renders, outcome.scene, plan)))
+        return [*stages, self._own(study, outcome)]
+
+    def _own(self, study: Study, outcome: Outcome) -> job.Stage:
+        command = [str(self.binary), *arguments(study, self.render_settings, outcome)]
+        return job.Stage("the renderer", command, explain_half if self.settings.use_cycles else str)
+
+
+def _as_it_is(group: Any) -> Any:
+    """The values of a property group, which do not change with it."""
+    return types.SimpleNamespace(**{p.identifier: getattr(group, p.identifier) for p in group.bl_rna.properties})
 
 
 def _folder(place: Path, study: Study, settings: Any, render_settings: Any, exported: Path) -> Path:
@@ -112,18 +148,9 @@ def _folder(place: Path, study: Study, settings: Any, render_settings: Any, expo
     return place / f"{name}-{read_scene_file(exported).sha256[:8]}"
 
 
-def _check_unsaved_images() -> None:
-    """The other Blender reads images from their files."""
-    for image in bpy.data.images:
-        if image.is_dirty and image.users and image.source != "VIEWER" and not images.ours(image):
-            raise RuntimeError(
-                f"WardMIS: image '{image.name}' has changes that Cycles would not see, since it runs in a second Blender; "
-                "save or pack the image, or compare without Cycles"
-            )
-
-
 def _finished(done: job.Job) -> None:
-    show(done.folder)
+    if done.folder is not None:
+        show(done.folder)
 
 
 def show(folder: Path) -> None:

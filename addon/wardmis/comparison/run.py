@@ -14,9 +14,9 @@ import bpy
 
 from ..operators import export_scene
 from ..preferences import renderer_path
-from ..process import Renderer, RendererError
+from ..process import STOPPED, Renderer, RendererError
 from . import interrupt
-from .converge import DEFAULT_CONFIGURATIONS, STOPPED, Outcome, Study, arguments, explain_half
+from .converge import DEFAULT_CONFIGURATIONS, Outcome, Study, arguments, explain_half
 from .cycles import CyclesPlan, Progress, render_cycles, require_cycles
 from .lock import alone
 from .overrides import Setting, overridden
@@ -125,11 +125,8 @@ def _resolution(scene: Any, size: tuple[int, int] | None) -> list[Setting]:
     ]
 
 
-def prepare(folder: Path, study: Study) -> Outcome:
-    """Checks what is asked for, makes the folder and exports the scene into it, where it does not hold the same one already.
-
-    Refuses a folder with renders of another scene.
-    """
+def check_study(study: Study) -> None:
+    """Raises RuntimeError for what cannot be compared."""
     if study.seeds < FEWEST_SEEDS:
         raise RuntimeError(
             f"WardMIS: {study.seeds} seeds cannot tell how sure a figure is; take at least {FEWEST_SEEDS}"
@@ -138,6 +135,14 @@ def prepare(folder: Path, study: Study) -> Outcome:
         raise RuntimeError(f"WardMIS: a budget of {study.budget_seconds:g} seconds is none; give how long it may take")
     if study.max_spp < FEWEST_SAMPLES:
         raise RuntimeError(f"WardMIS: {study.max_spp} samples per pixel make no curve; take at least {FEWEST_SAMPLES}")
+
+
+def prepare(folder: Path, study: Study) -> Outcome:
+    """Checks what is asked for, makes the folder and exports the scene into it, where it does not hold the same one already.
+
+    Refuses a folder with renders of another scene.
+    """
+    check_study(study)
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
