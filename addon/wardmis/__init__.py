@@ -22,6 +22,8 @@ from . import (  # noqa: E402
     properties,
     rendering,
     scripting,
+    warning_panels,
+    warnings,
 )
 from .comparison import compare  # noqa: E402
 from .operators import export_scene  # noqa: E402
@@ -30,12 +32,14 @@ __all__ = ["compare", "export_scene", "register", "unregister"]
 
 _PARTS = (
     rendering,
+    warnings,
     preferences,
     properties,
     passes,
     nodes,
     engine,
     operators,
+    warning_panels,  # above the settings: it is there only when there is something to be said
     panels,
     comparison,
     scripting,

@@ -18,7 +18,7 @@ from typing import Any
 
 import bpy
 
-from . import rendering
+from . import rendering, warnings
 from .export import ExportCancelled, ExportError, export_depsgraph
 from .export.camera import border, full_resolution
 from .passes import not_available, register_passes, wanted
@@ -68,18 +68,27 @@ class WARDMIS_RenderEngine(bpy.types.RenderEngine):
             with tempfile.TemporaryDirectory(prefix="wardmis-", dir=bpy.app.tempdir) as folder:
                 _Render(self, depsgraph, Path(folder)).run()
         except (ExportCancelled, _Stopped):
+            self.keep_text("Cancelled")
             # a script must not take it for a success, and an animation not go on without the add-on
             if bpy.app.background or rendering.stopping():
                 self.report({"ERROR"}, "WardMIS: stopped before the image was complete")
         except (ExportError, RendererError) as error:
-            self.report({"ERROR"}, f"WardMIS: {error}")
+            self._fail(str(error))
         except OSError as error:
-            self.report({"ERROR"}, f"WardMIS: {error.strerror or error}: {error.filename or 'a file of the render'}")
+            self._fail(f"{error.strerror or error}: {error.filename or 'a file of the render'}")
         except Exception as error:  # a mistake of ours; without the report Blender would save a blank image
             traceback.print_exc()
-            self.report(
-                {"ERROR"}, f"WardMIS: an error in the add-on, please report it with the console's text: {error!r}"
-            )
+            self._fail(f"an error in the add-on, please report it with the console's text: {error!r}")
+
+    def keep_text(self, text: str) -> None:
+        """Beside the time, also when the render has ended, which update_stats() does not outlast."""
+        self.update_stats("", text)
+        if not bpy.app.background:
+            self.error_set(text)
+
+    def _fail(self, message: str) -> None:
+        self.keep_text("Failed")
+        self.report({"ERROR"}, f"WardMIS: {message}")
 
 
 class _Render:
@@ -96,11 +105,17 @@ class _Render:
         x0, y0, x1, y1 = border(self.scene.render, full_resolution(self.scene.render))
         self.width, self.height = x1 - x0, y1 - y0
         self.result: Any = None
-        self.notes: set[str] = set()
         self.started = False
         self.statistics: dict[str, Any] = {}
 
     def run(self) -> None:
+        warnings.begin(*self._place())
+        try:
+            self._run()
+        finally:
+            warnings.redraw()
+
+    def _run(self) -> None:
         if _export_to is not None:
             self._export(_export_to)
             return
@@ -128,12 +143,21 @@ class _Render:
         # saved files carry it, as they do Cycles' own
         name = f"wardmis.{self.layer.name}.statistics"
         self.engine.get_result().stamp_data_add_field(name, json.dumps(self.statistics))
+        count = warnings.count(*self._place())
+        if count and not bpy.app.background:
+            self.engine.keep_text(warnings.count_text(count))
+            self.engine.report(
+                {"WARNING"}, f"WardMIS: {warnings.count_text(count)}, see Warnings in the Render Properties"
+            )
+
+    def _place(self) -> tuple[str, str]:
+        return self.scene.name, self.layer.name
 
     def _stopped(self) -> bool:
         return rendering.stopping() or self.engine.test_break()
 
     def _export(self, path: Path) -> None:
-        self.engine.update_stats("", "Exporting the scene")
+        self._show_text("Exporting the scene")
         for name in not_available(self.layer):
             self._warn(f"view layer '{self.layer.name}': there is no pass {name}; it is left out")
         for note in export_depsgraph(self.depsgraph, path, self.engine.camera_override, self._stopped):
@@ -157,9 +181,11 @@ class _Render:
             )
 
     def _warn(self, message: str) -> None:
-        if message not in self.notes:
-            self.notes.add(message)
-            self.engine.report({"WARNING"}, f"WardMIS: {message}")
+        warnings.add(*self._place(), message)
+
+    def _show_text(self, text: str, left: str = "") -> None:
+        count = warnings.count(*self._place())
+        self.engine.update_stats(left, f"{text} | {warnings.count_text(count)}" if count else text)
 
     def _arguments(self) -> list[str]:
         settings, render = self.scene.wardmis, self.scene.render
@@ -224,7 +250,7 @@ class _Render:
         samples = f"{event['samples']}" + (f"/{event['of']}" if event.get("of") else "")
         phase = "Pilot" if event["phase"] == "pilot" else "Sample"
         left = f"Remaining: {_clock(event['left'])}" if event.get("left") is not None else ""
-        self.engine.update_stats(left, f"{phase} {samples}")
+        self._show_text(f"{phase} {samples}", left)
 
     def _show(self, path: Path) -> None:
         """Loads an image into the result, which begins with the first one."""

@@ -40,7 +40,7 @@ class Registration(unittest.TestCase):
             self.assertEqual((gone["classes"], gone["panels"], gone["scene"]), ([], [], False))
             self.assertEqual(gone["menu"], registered["menu"] - 1)
             self.assertEqual((gone["window manager"], gone["view layer"]), (False, False))
-            self.assertEqual(gone["handlers"], registered["handlers"] - 2)
+            self.assertEqual(gone["handlers"], registered["handlers"] - 3)
             wardmis.register()
             self.assertEqual(traces(), registered)
 

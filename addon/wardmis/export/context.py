@@ -20,6 +20,17 @@ class ExportCancelled(Exception):
     """The user pressed Esc during the export."""
 
 
+class Note(str):
+    """A sentence for the user that knows the object it is about."""
+
+    def __new__(cls, text: str, owner: str) -> Note:
+        note = super().__new__(cls, text)
+        note.owner = owner
+        return note
+
+    owner: str
+
+
 class ExportContext:
     """Handed to every part of the export; `owner` is the object being exported, for messages."""
 
@@ -37,7 +48,7 @@ class ExportContext:
     def note(self, text: str) -> None:
         """Tells the user, once, about something that is rendered other than Blender shows it."""
         if text not in self.notes:
-            self.notes.append(text)
+            self.notes.append(Note(text, self.owner))
 
     def texture(self, image: Any, interpolation: str = "Linear", extension: str = "REPEAT") -> int:
         """The index of a texture that looks `image` (a bpy Image) up as an Image Texture node with these settings does.

@@ -46,6 +46,7 @@ def gather_scene(
     context.check_finite(film, "the scene's film")
     context.check_finite(camera_data, f"camera '{camera_data.name}'")
     gatherer.gather_objects(depsgraph)
+    context.owner = ""
     world = export_world(compat.world_of(depsgraph.view_layer_eval, scene), context)
     return SceneData(
         generator,
