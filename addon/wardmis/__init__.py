@@ -13,6 +13,7 @@ bl_info = {
 
 from . import (  # noqa: E402
     comparison,
+    data_panels,
     engine,
     nodes,
     operators,
@@ -41,6 +42,7 @@ _PARTS = (
     operators,
     warning_panels,  # above the settings: it is there only when there is something to be said
     panels,
+    data_panels,
     comparison,
     scripting,
 )

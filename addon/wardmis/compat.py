@@ -137,10 +137,14 @@ def uvs(mesh: Any) -> np.ndarray | None:
 # --- lights, world, objects -----------------------------------------------------------------------------------------
 
 
-def light_casts_shadow(light: Any) -> bool:
-    """Cycles had a setting of its own until 4.2."""
+def light_shadow_setting(light: Any) -> tuple[Any, str]:
+    """Who has the setting whether a light casts shadows, and its name: Cycles had one of its own until 4.2."""
     cycles: Any = getattr(light, "cycles", None)
-    return bool(cycles.cast_shadow if hasattr(cycles, "cast_shadow") else light.use_shadow)
+    return (cycles, "cast_shadow") if hasattr(cycles, "cast_shadow") else (light, "use_shadow")
+
+
+def light_casts_shadow(light: Any) -> bool:
+    return bool(getattr(*light_shadow_setting(light)))
 
 
 def light_has_soft_falloff(light: Any) -> bool:
@@ -245,6 +249,9 @@ def shadow_terminator_owner(obj: Any) -> Any:
 
 # --- the user interface ---------------------------------------------------------------------------------------------
 
+# What Cycles calls a spot light's angle, and whether a light or a world can be without nodes
+SPOT_SIZE = "Angle" if VERSION >= (5, 0, 0) else "Spot Size"
+HAS_USE_NODES = VERSION < (5, 0, 0)
 LINEAR_SPACE = "Linear Rec.709" if VERSION >= (4, 0, 0) else "Linear"
 
 

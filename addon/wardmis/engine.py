@@ -203,9 +203,8 @@ class _Render:
             arguments += ["--time", f"{settings.seconds:.6g}"]
         if settings.allocation in ALLOCATIONS_WITH_PILOT:
             arguments += ["--pilot-spp", settings.pilot_samples, "--min-fraction", f"{settings.min_fraction:.6g}"]
-        threads = settings.threads or (render.threads if render.threads_mode == "FIXED" else 0)
-        if threads:
-            arguments += ["--threads", threads]
+        if render.threads_mode == "FIXED":
+            arguments += ["--threads", render.threads]
         return [str(argument) for argument in arguments]
 
     def _follow(self, renderer: Renderer) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The panels in the Properties editor: our own, and Blender's that make sense with this engine."""
+"""The panels of the Properties editor: those of the render and of the view layer, in Cycles' order, and which of Blender's go with them."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from typing import Any
 
 import bpy
 
-from . import compat
 from .engine import WARDMIS_RenderEngine
 from .properties import ALLOCATIONS_WITH_PILOT
 
@@ -21,11 +20,23 @@ EXCLUDED = {
     "DATA_PT_light",
     "DATA_PT_preview",
     "DATA_PT_spot",
+    "DATA_PT_volume_render",
     "NODE_DATA_PT_light",
     "NODE_DATA_PT_spot",
+    "OBJECT_PT_shading",  # light and shadow linking
+    "OBJECT_PT_visibility",  # holdouts
+    "PARTICLE_PT_hair_shape",
+    "PHYSICS_PT_fluid_domain_render",
+    "RENDER_PT_simplify",  # ours stands where Cycles' does
     "RENDER_PT_stereoscopy",
 }
-EXCLUDED_PREFIXES = ("RENDER_PT_freestyle", "VIEWLAYER_PT_freestyle", "MATERIAL_PT_freestyle")
+EXCLUDED_PREFIXES = (
+    "PARTICLE_PT_render_path",
+    "RENDER_PT_simplify_",
+    "RENDER_PT_freestyle",
+    "VIEWLAYER_PT_freestyle",
+    "MATERIAL_PT_freestyle",
+)
 # Eevee's panels that edit what this engine reads, too
 INCLUDED = {
     "DATA_PT_camera_dof",
@@ -99,6 +110,22 @@ class WARDMIS_RENDER_PT_light_paths(RenderPanel, bpy.types.Panel):
         _row(column, settings.integrator == "path").prop(settings, "max_depth")
 
 
+class WARDMIS_RENDER_PT_simplify(RenderPanel, bpy.types.Panel):
+    bl_label = "Simplify"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context: Any) -> None:
+        self.layout.prop(context.scene.render, "use_simplify", text="")
+
+    def draw(self, context: Any) -> None:
+        render, column = context.scene.render, self._column()
+        column.active = render.use_simplify
+        for heading, suffix in (("Viewport", ""), ("Render", "_render")):
+            group = column.column(heading=heading)
+            group.prop(render, f"simplify_subdivision{suffix}", text=f"{heading} Max Subdivision")
+            group.prop(render, f"simplify_child_particles{suffix}", text="Child Particles")
+
+
 class WARDMIS_RENDER_PT_film(RenderPanel, bpy.types.Panel):
     bl_label = "Film"
     bl_options = {"DEFAULT_CLOSED"}
@@ -116,7 +143,9 @@ class WARDMIS_RENDER_PT_performance(RenderPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: Any) -> None:
-        self._column().prop(context.scene.wardmis, "threads")
+        render, column = context.scene.render, self._column()
+        column.prop(render, "threads_mode")
+        _row(column, render.threads_mode == "FIXED").prop(render, "threads", text="Threads")
 
 
 class WARDMIS_VIEWLAYER_PT_passes(Panel, bpy.types.Panel):
@@ -135,6 +164,17 @@ class WARDMIS_VIEWLAYER_PT_passes(Panel, bpy.types.Panel):
         noise.prop(layer.wardmis, "use_pass_allocation")
 
 
+class WARDMIS_VIEWLAYER_PT_filter(Panel, bpy.types.Panel):
+    bl_label = "Filter"
+    bl_context = "view_layer"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: Any) -> None:
+        column = self._column().column(heading="Include")
+        column.prop(context.view_layer, "use_sky", text="Environment")
+        column.prop(context.view_layer, "use_solid", text="Surfaces")
+
+
 class WARDMIS_VIEWLAYER_PT_override(Panel, bpy.types.Panel):
     bl_label = "Override"
     bl_context = "view_layer"
@@ -147,71 +187,16 @@ class WARDMIS_VIEWLAYER_PT_override(Panel, bpy.types.Panel):
             column.prop(context.view_layer, "world_override")
 
 
-class WARDMIS_OBJECT_PT_ray_visibility(Panel, bpy.types.Panel):
-    bl_label = "Ray Visibility"
-    bl_context = "object"
-    bl_parent_id = "OBJECT_PT_visibility"
-
-    def draw(self, context: Any) -> None:
-        column = self._column()
-        for kind in ("camera", "diffuse", "glossy", "shadow"):
-            column.prop(context.object, f"visible_{kind}", text=kind.title())
-
-
-class WARDMIS_LIGHT_PT_light(Panel, bpy.types.Panel):
-    bl_label = "Light"
-    bl_context = "data"
-
-    @classmethod
-    def poll(cls, context: Any) -> bool:
-        return context.light is not None and super().poll(context)
-
-    def draw(self, context: Any) -> None:
-        light = context.light
-        self.layout.row().prop(light, "type", expand=True)
-        column = self._column()
-        for name in _light_settings(light):
-            if hasattr(light, name):  # some came with later versions of Blender
-                column.prop(light, name)
-        # the setting that the export reads: see compat.light_casts_shadow
-        own = getattr(light, "cycles", None)
-        column.prop(*((own, "cast_shadow") if hasattr(own, "cast_shadow") else (light, "use_shadow")))
-        column.prop(light, "use_nodes")
-        if compat.uses_nodes(light):
-            output = light.node_tree.get_output_node("CYCLES")
-            if output is not None:
-                self.layout.template_node_view(light.node_tree, output, output.inputs["Surface"])
-
-
-def _light_settings(light: Any) -> Iterator[str]:
-    yield "color"
-    yield "use_temperature"
-    if getattr(light, "use_temperature", False):
-        yield "temperature"
-    yield from ("energy", "exposure", "normalize")
-    if light.type in {"POINT", "SPOT"}:
-        yield from ("shadow_soft_size", "use_soft_falloff")
-    if light.type == "SPOT":
-        yield from ("spot_size", "spot_blend", "show_cone")
-    if light.type == "SUN":
-        yield "angle"
-    if light.type == "AREA":
-        yield from ("shape", "size")
-        if light.shape in {"RECTANGLE", "ELLIPSE"}:
-            yield "size_y"
-        yield "spread"
-
-
 _CLASSES = (
     WARDMIS_RENDER_PT_sampling,
     WARDMIS_RENDER_PT_allocation,
     WARDMIS_RENDER_PT_light_paths,
+    WARDMIS_RENDER_PT_simplify,
     WARDMIS_RENDER_PT_film,
     WARDMIS_RENDER_PT_performance,
     WARDMIS_VIEWLAYER_PT_passes,
+    WARDMIS_VIEWLAYER_PT_filter,
     WARDMIS_VIEWLAYER_PT_override,
-    WARDMIS_OBJECT_PT_ray_visibility,
-    WARDMIS_LIGHT_PT_light,
 )
 
 

@@ -125,13 +125,6 @@ class WARDMIS_PG_scene(bpy.types.PropertyGroup):
         name="Sampler", description="Where the random numbers come from", items=SAMPLERS, default="sobol"
     )
     seed: IntProperty(name="Seed", description="The image depends on it, and never on the threads", default=0, min=0)
-    threads: IntProperty(
-        name="Threads",
-        description="Threads of the renderer; 0: as set in Performance, else all",
-        default=0,
-        min=0,
-        max=1024,
-    )
     filter_type: EnumProperty(name="Filter", description="Pixel filter", items=FILTERS, default="blackman-harris")
     filter_width: FloatProperty(
         name="Width",

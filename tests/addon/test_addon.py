@@ -6,13 +6,14 @@ from __future__ import annotations
 import ast
 import os
 import re
+import types
 import unittest
 from unittest import mock
 
 import bpy
 import wardmis
 from support import ADDON, FAKE
-from wardmis import panels, properties
+from wardmis import data_panels, panels, properties
 from wardmis.export import VERSION
 
 COMMAND = (ADDON.parents[1] / "docs" / "command.md").read_text()
@@ -130,17 +131,73 @@ class Panels(unittest.TestCase):
         ):
             self.assertIn(name, shown)
         self.assertFalse({"MATERIAL_PT_preview", "DATA_PT_preview", "RENDER_PT_freestyle"} & shown)
+        # without effect here; panels within them go with them
+        for name in ("OBJECT_PT_shading", "OBJECT_PT_visibility", "RENDER_PT_simplify", "DATA_PT_volume_render"):
+            self.assertNotIn(name, shown)
+        self.assertFalse([name for name in shown if "light_linking" in name or "shadow_linking" in name])
 
-    def test_settings_of_every_light_exist(self):
-        for kind in ("POINT", "SPOT", "SUN", "AREA"):
+    def test_order_is_that_of_cycles(self):
+        import cycles.ui
+
+        for context, module in (("render", panels), ("view_layer", panels), ("data", data_panels)):
+            theirs = [p.bl_label for p in cycles.ui.classes if getattr(p, "bl_context", "") == context]
+            own = [p for p in module._CLASSES if p.bl_context == context and not hasattr(p, "bl_parent_id")]
+            ours = [p.bl_label for p in own]
+            common = [label for label in ours if label in theirs]
+            self.assertGreater(len(common), 1, context)
+            self.assertEqual(common, sorted(common, key=theirs.index), context)
+
+    def test_lights_have_cycles_names(self):
+        import cycles.ui
+
+        ours = [p for p in data_panels._CLASSES if p.__name__.startswith("WARDMIS_LIGHT")]
+        theirs = [p for p in cycles.ui.classes if p.__name__ in {"CYCLES_LIGHT_PT_light", "CYCLES_LIGHT_PT_settings"}]
+        theirs.append(bpy.types.CYCLES_LIGHT_PT_beam_shape)
+        for kind, shape in (("POINT", None), ("SPOT", None), ("SUN", None), ("AREA", "SQUARE"), ("AREA", "RECTANGLE")):
             light = bpy.data.lights.new("Light", kind)
-            for name in panels._light_settings(light):
-                if name not in {
-                    "use_temperature",
-                    "temperature",
-                    "exposure",
-                    "normalize",
-                    "use_soft_falloff",
-                }:  # later versions'
-                    self.assertTrue(hasattr(light, name), f"{kind}.{name}")
-            bpy.data.lights.remove(light)
+            self.addCleanup(bpy.data.lights.remove, light)
+            if shape:
+                light.shape = shape
+            here = {"scene": bpy.context.scene, "preferences": bpy.context.preferences}
+            context = types.SimpleNamespace(light=light, engine="WARDMIS", **here)
+            names = dict(label for panel in ours if panel.poll(context) for label in drawn(panel, context))
+            context.engine = "CYCLES"
+            expected = dict(label for panel in theirs if panel.poll(context) for label in drawn(panel, context))
+            names.pop("use_nodes", None)  # a button without a label of its own in Cycles
+            self.assertEqual(names, {name: expected[name] for name in names}, kind)
+            self.assertIn({"POINT": "Radius", "SPOT": "Radius", "SUN": "Angle", "AREA": "Spread"}[kind], names.values())
+            self.assertIn("Cast Shadow", names.values())
+
+    def test_every_panel_of_a_scene_can_be_drawn(self):
+        obj = bpy.data.objects.new("Object", bpy.data.meshes.new("Mesh"))
+        self.addCleanup(bpy.data.objects.remove, obj)
+        scene = bpy.context.scene
+        context = types.SimpleNamespace(
+            object=obj, scene=scene, view_layer=scene.view_layers[0], engine="WARDMIS", light=None
+        )
+        for panel in (*panels._CLASSES, *data_panels._CLASSES):
+            if panel.poll(context):
+                self.assertTrue(drawn(panel, context), panel)
+
+
+class Recorder:
+    """A layout that keeps what is drawn: (property, label)."""
+
+    def __init__(self) -> None:
+        self.drawn: list[tuple[str, str]] = []
+
+    def prop(self, owner, name, text=None, **_):
+        prop = owner.bl_rna.properties[name]
+        if text != "":
+            self.drawn.append((name, prop.name if text is None else text))
+
+    def part(self, *_, **__):
+        return self
+
+    column = row = grid_flow = split = separator = label = template_node_view = prop_decorator = part
+
+
+def drawn(panel, context):
+    layout = Recorder()
+    panel.draw(types.SimpleNamespace(layout=layout, bl_space_type="PROPERTIES", _column=layout.part), context)
+    return layout.drawn

@@ -160,13 +160,13 @@ class Arguments(RenderTest):
             "s = scene.wardmis\n"
             "s.allocation, s.weights, s.integrand, s.integrator = 'variance', 'power', 'joint', 'direct'\n"
             "s.samples, s.samples_per_hit, s.pilot_samples, s.min_fraction = 7, 5, 2, 0.05\n"
-            "s.max_depth, s.sampler, s.seed, s.threads = 3, 'independent', 11, 2\n"
+            "s.max_depth, s.sampler, s.seed = 3, 'independent', 11\n"
         )
         arguments = run.calls[0]["arguments"]
         expected = (
             "--allocation variance --weights power --integrand joint --integrator direct --spp 7 --samples-per-hit 5 "
         )
-        expected += "--pilot-spp 2 --min-fraction 0.05 --max-depth 3 --sampler independent --seed 11 --threads 2"
+        expected += "--pilot-spp 2 --min-fraction 0.05 --max-depth 3 --sampler independent --seed 11"
         words = expected.split()
         for option, setting in zip(words[::2], words[1::2]):
             self.assertEqual(arguments[arguments.index(option) + 1], setting, option)

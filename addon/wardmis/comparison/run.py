@@ -205,7 +205,7 @@ def scene_title(scene: Any) -> str:
 def threads_of(scene: Any) -> int:
     """As many as a render takes (engine.py); 0 is all."""
     render = scene.render
-    return scene.wardmis.threads or (render.threads if render.threads_mode == "FIXED" else 0)
+    return render.threads if render.threads_mode == "FIXED" else 0
 
 
 def _absolute(path: str | os.PathLike[str] | None) -> Path | None:
