@@ -595,6 +595,7 @@ class Reporter {
     json toTarget = timeToTarget(m, goal_);
     if (!wins.is_null()) wins["text"] = mapRemark(c.name, base_->configuration->name, wins, toTarget);
     return {{"name", c.name},
+            {"image", folderName(c.name) + ".exr"},
             {"renderer", c.renderer},
             {"settings", c.described},
             {"description", description},

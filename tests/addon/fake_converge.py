@@ -3,6 +3,7 @@
 
 import argparse
 import json
+import re
 import time
 from pathlib import Path
 
@@ -85,12 +86,17 @@ def converge(options, film, mode):
         (folder / "study.json").write_text(json.dumps({"chosen_spp": options.max_spp}))
         write_exr(folder / "reference.exr", "ViewLayer", {"Combined": "RGBA", "Variance": "RGB"}, film)
         for name, _ in labels:
-            write_exr(folder / "images" / f"{name}.exr", "ViewLayer", {"Combined": "RGBA"}, film)
-            write_exr(folder / "images" / f"{name}-error.exr", "ViewLayer", {"Combined": "RGBA"}, film)
+            file = folder / "images" / file_name(name)
+            write_exr(file, "ViewLayer", {"Combined": "RGBA"}, film)
+            write_exr(file.with_name(f"{file.stem}-error.exr"), "ViewLayer", {"Combined": "RGBA"}, film)
         (folder / "report.json").write_text(json.dumps(report(options, labels, size)))
         (folder / "report.html").write_text("<!doctype html><title>fake</title>")
     say(event="done", path=str(folder / "report.html"), report=str(folder / "report.json"), seconds=0.1)
     return 0
+
+
+def file_name(configuration):
+    return re.sub(r"[^\w-]", "_", configuration) + ".exr"
 
 
 def check_external(path, external):
@@ -135,6 +141,7 @@ def configuration(name, renderer, checkpoints):
     verdict = "baseline" if factor == 1 else "faster" if factor < 1 else "slower"
     return {
         "name": name,
+        "image": file_name(name),
         "renderer": renderer,
         "settings": {},
         "description": name,

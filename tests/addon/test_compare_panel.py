@@ -11,6 +11,7 @@ import types
 import unittest
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 from unittest import mock
 
 import bpy
@@ -100,6 +101,13 @@ class Background(PanelTest):
         self.assertFalse((Path(bpy.app.tempdir) / "wardmis-comparison" / "scene.blend").exists())
         # the scene is the user's, and has not been rendered by this Blender
         self.assertEqual(self.scene.render.engine, "WARDMIS")
+
+    def test_cycles_as_it_is_set_is_among_the_results(self):
+        """Its name has spaces, and its file's name has none."""
+        self.settings.use_cycles = self.settings.cycles_as_is = True
+        self.scene.cycles.use_denoising = False
+        self.compare()
+        self.assertIn("Cycles as set", properties.report().image_names)
 
     def test_a_budget_with_cycles(self):
         self.settings.use_cycles = True
@@ -380,6 +388,73 @@ class Results(PanelTest):
         self.assertEqual(len(report.curves()[0].seconds), 3)
         self.assertIsNone(report.equal_seconds)
         self.assertIsNone(report.target)
+
+
+class UsersFile(PanelTest):
+    """What a comparison shows is no part of the file that the user works on."""
+
+    def setUp(self) -> None:
+        super().setUp()
+        wardmis.compare(self.folder, cycles=False, **SMALL)
+        bpy.ops.wardmis.compare_open(directory=str(self.folder))
+        images.put(images.PLOT, np.full((8, 16, 3), 0.5, np.float32), "a plot", srgb=True)
+        self.editor = types.SimpleNamespace(image=bpy.data.images[images.B])  # there is no window here
+        patch = mock.patch.object(images, "image_editors", lambda: [self.editor])
+        patch.start()
+        self.addCleanup(patch.stop)
+
+    def ours(self) -> list[str]:
+        return sorted(image.name for image in bpy.data.images if images.ours(image))
+
+    def save(self) -> Path:
+        path = self.folder.parent / "user.blend"
+        bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True, compress=False)
+        return path
+
+    def test_blender_has_nothing_to_ask_about(self):
+        self.assertEqual(self.ours(), sorted(images.NAMES.values()))
+        self.assertEqual([image.name for image in bpy.data.images if image.is_dirty], [])
+        properties.results().top = 2.0  # makes them anew
+        self.assertEqual([image.name for image in bpy.data.images if image.is_dirty], [])
+
+    def test_saving_leaves_them_out_and_in_place(self):
+        pixels = read_pixels(bpy.data.images[images.B])
+        for image in bpy.data.images:
+            image.use_fake_user = True  # as an editor's use has it
+        for autopack in (False, True):
+            if bpy.data.use_autopack != autopack:
+                bpy.ops.file.autopack_toggle()
+            path = self.save()
+            with bpy.data.libraries.load(str(path)) as (stored, _):
+                self.assertEqual([name for name in stored.images if name.startswith("WardMIS")], [])
+            self.assertEqual(self.ours(), sorted(images.NAMES.values()))
+            self.assertEqual(self.editor.image, bpy.data.images[images.B])
+            np.testing.assert_allclose(read_pixels(self.editor.image), pixels, rtol=1e-6)
+        bpy.ops.file.autopack_toggle()
+
+    def test_an_image_that_the_user_takes_is_saved(self):
+        tree = self.material.node_tree
+        tree.nodes.new("ShaderNodeTexImage").image = bpy.data.images[images.A]
+        with bpy.data.libraries.load(str(self.save())) as (stored, _):
+            self.assertEqual([name for name in stored.images if name.startswith("WardMIS")], [images.A])
+
+    def test_they_go_with_the_results(self):
+        bpy.ops.wardmis.compare_close()
+        self.assertEqual(self.ours(), [])
+        self.assertIsNone(properties.report())
+        self.editor.image = None  # as Blender's own do
+        bpy.ops.wardmis.compare_open(directory=str(self.folder))
+        wardmis.unregister()
+        gone = self.ours()
+        wardmis.register()
+        self.scene.render.engine = "WARDMIS"
+        self.assertEqual(gone, [])
+
+
+def read_pixels(image: Any) -> np.ndarray:
+    pixels = np.empty(len(image.pixels), np.float32)
+    image.pixels.foreach_get(pixels)
+    return pixels
 
 
 class Settings(unittest.TestCase):

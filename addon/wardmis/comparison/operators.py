@@ -166,12 +166,7 @@ def show(folder: Path) -> None:
 def _put_into_editors(view: str) -> None:
     """Into those that show one of ours, else into the one under the pointer."""
     image = bpy.data.images.get(images.NAMES[view])
-    spaces = [
-        area.spaces.active
-        for window in bpy.context.window_manager.windows
-        for area in window.screen.areas
-        if area.type == "IMAGE_EDITOR"
-    ]
+    spaces = images.image_editors()
     showing = [space for space in spaces if space.image is not None and images.ours(space.image)]
     here = getattr(bpy.context, "space_data", None)
     if not showing and here in spaces:
@@ -275,6 +270,20 @@ class WARDMIS_OT_compare_view(bpy.types.Operator):
         return {"FINISHED"}
 
 
+class WARDMIS_OT_compare_close(bpy.types.Operator):
+    bl_idname = "wardmis.compare_close"
+    bl_label = "Close Results"
+    bl_description = "Remove the comparison's images from Blender. The folder keeps everything, for Open Results"
+
+    @classmethod
+    def poll(cls, _context: Any) -> bool:
+        return properties.report() is not None
+
+    def execute(self, _context: Any) -> set[str]:
+        properties.forget_report()
+        return {"FINISHED"}
+
+
 class WARDMIS_OT_compare_report(bpy.types.Operator):
     bl_idname = "wardmis.compare_report"
     bl_label = "Open Report"
@@ -298,6 +307,7 @@ _CLASSES = (
     WARDMIS_OT_compare_cancel,
     WARDMIS_OT_compare_open,
     WARDMIS_OT_compare_view,
+    WARDMIS_OT_compare_close,
     WARDMIS_OT_compare_report,
 )
 _keys: list[tuple[Any, Any]] = []

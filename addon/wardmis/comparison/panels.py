@@ -90,6 +90,7 @@ def draw_results(layout: Any) -> None:
     column = layout.column(align=True)
     column.operator(view, text="Plot", icon="GRAPH").view = "PLOT"
     column.operator(operators.WARDMIS_OT_compare_report.bl_idname, icon="URL")
+    column.operator(operators.WARDMIS_OT_compare_close.bl_idname, icon="X")
 
 
 def _draw_table(box: Any, report: Any) -> None:

@@ -146,6 +146,7 @@ def show_report(folder: Path) -> Report:
 def forget_report() -> None:
     global _report, _items
     _report, _items = None, []
+    images.forget()
 
 
 def reload_images() -> None:

@@ -75,7 +75,11 @@ class Report:
         return [*names, REFERENCE] if self.image(REFERENCE).is_file() else names
 
     def image(self, name: str) -> Path:
-        return self.folder / "reference.exr" if name == REFERENCE else self.folder / "images" / f"{name}.exr"
+        if name == REFERENCE:
+            return self.folder / "reference.exr"
+        # earlier reports do not say it
+        file = next(c.get("image", f"{name}.exr") for c in self.configurations if c["name"] == name)
+        return self.folder / "images" / file
 
     @property
     def equal_seconds(self) -> float | None:
