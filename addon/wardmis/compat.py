@@ -215,6 +215,18 @@ else:
     PRINCIPLED_EXTRAS = ("Subsurface", "Transmission", "Clearcoat", "Sheen")
 
 
+# --- images of a render ----------------------------------------------------------------------------------------------
+
+LONGEST_CHANNEL = (
+    62  # bytes of a channel's name in an OpenEXR file, "<layer>.<pass>.<channel>": Blender cuts longer ones
+)
+
+
+def set_pixels(render_pass: Any, pixels: np.ndarray) -> None:
+    """`pixels`: (height * width, channels) float32, rows from the bottom."""
+    render_pass.rect.foreach_set(pixels if VERSION < (4, 0, 0) else pixels.reshape(-1))
+
+
 # --- Cycles and its files -------------------------------------------------------------------------------------------
 
 

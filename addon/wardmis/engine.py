@@ -17,10 +17,12 @@ from pathlib import Path
 from typing import Any
 
 import bpy
+import numpy as np
 
-from . import rendering, warnings
+from . import compat, rendering, warnings
 from .export import ExportCancelled, ExportError, export_depsgraph
 from .export.camera import border, full_resolution
+from .exr import read_header, read_pass
 from .passes import not_available, register_passes, wanted
 from .preferences import renderer_path
 from .process import Renderer, RendererError
@@ -256,12 +258,26 @@ class _Render:
         if self.result is None:
             self.result = self.engine.begin_result(0, 0, self.width, self.height, layer=self.layer.name)
         try:
-            self.result.load_from_file(str(path))
+            self._load(path)
         except RuntimeError as error:
             raise RendererError(
                 f"Blender cannot read the image of the renderer as one of {self.width} x {self.height} pixels: {str(error).strip()}"
             ) from error
         self.engine.update_result(self.result)
+
+    def _load(self, path: Path) -> None:
+        """RuntimeError where the image is not of the result's size."""
+        passes = self.result.layers[0].passes
+        longest = max(len(f"{self.layer.name}.{p.name}.X".encode()) for p in passes)
+        if longest <= compat.LONGEST_CHANNEL:
+            self.result.load_from_file(str(path))
+            return
+        there = {name.split(".")[-2] for name, _ in read_header(path).channels()}
+        for render_pass in (p for p in passes if p.name in there):
+            pixels = read_pass(path, render_pass.name)[::-1]
+            if pixels.shape != (self.height, self.width, render_pass.channels):
+                raise RuntimeError(f"{render_pass.name} has {pixels.shape[1]} x {pixels.shape[0]} pixels")
+            compat.set_pixels(render_pass, np.ascontiguousarray(pixels.reshape(-1, render_pass.channels)))
 
 
 def _clock(seconds: float) -> str:

@@ -22,11 +22,11 @@ from support import ADDON
 from wardmis import compat, scripting, second_blender
 from wardmis import layout as panel_layout
 from wardmis.comparison import colours, images, job, operators, panels, plot, properties
-from wardmis.comparison.exr import read_pass
 from wardmis.comparison.overrides import overridden
 from wardmis.comparison.report import VERDICTS, Report
 from wardmis.comparison.run import divide
 from wardmis.comparison.same_scene import same_but_for_rounding
+from wardmis.exr import read_pass
 
 
 class PanelTest(ComparisonTest):

@@ -20,10 +20,10 @@ import wardmis
 from comparison_support import SMALL, ComparisonTest
 from support import ADDON, FAKE, HERE, read_exr
 from wardmis.comparison import converge, cycles, cycles_settings, lock
-from wardmis.comparison.exr import read_header, read_pass
 from wardmis.comparison.manifest import Manifest
 from wardmis.comparison.overrides import overridden
 from wardmis.comparison.scene_file import SceneFile, read_scene_file
+from wardmis.exr import read_header, read_pass
 
 
 class Comparing(ComparisonTest):

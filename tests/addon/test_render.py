@@ -41,6 +41,24 @@ import wardmis.engine
 arguments = wardmis.engine._Render._arguments
 wardmis.engine._Render._arguments = lambda self: [*arguments(self), "--preview", str(self.preview_path)]
 """
+WRITE_PASSES = """
+import hashlib
+import json
+import numpy
+show = wardmis.engine._Render._show
+def show_and_write(self, path):
+    show(self, path)
+    digests = {}
+    for p in self.result.layers[0].passes:
+        shape = (self.width * self.height, p.channels)
+        pixels = numpy.zeros(shape if bpy.app.version < (4, 0, 0) else shape[0] * shape[1], numpy.float32)
+        p.rect.foreach_get(pixels)
+        assert pixels.reshape(-1)[-1] != 0  # all of it was got
+        digests[p.name] = hashlib.md5(pixels.tobytes()).hexdigest()
+    with open(scene.render.filepath + "passes", "a") as file:
+        print(json.dumps((self.layer.name, digests)), file=file)
+wardmis.engine._Render._show = show_and_write
+"""
 # of Blender 3.4, and of later ones
 COMPLAINTS = ("IMB_exr_set_channel", "Reading render result")
 
@@ -135,6 +153,25 @@ class Passes(RenderTest):
         image = read_exr(run.images[0])
         for layer in ("ViewLayer", "Second"):
             self.assertAlmostEqual(float(image[f"{layer}.Variance.R"][19, 3]), value(4, 3, 0), 5, layer)
+
+    def test_view_layers_of_any_name(self):
+        """Blender cuts the names of an image's channels, which begin with the layer's, and takes none that it does not find."""
+        names = [f"{length:02}{'x' * (length - 2)}" for length in (10, 42, 43, 53, 54, 63)]
+        names += ["\u00fc" * 31, "a.b" * 18]
+        run = self.run_blender(
+            WITH_PREVIEW
+            + f"scene.view_layers[0].name = {names[0]!r}\nfor name in {names[1:]!r}:\n    scene.view_layers.new(name)\n"
+            + EVERY_PASS
+            + WRITE_PASSES
+        )
+        self.assertEqual(run.code, 0, run.output)
+        for complaint in COMPLAINTS:
+            self.assertNotIn(complaint, run.output)
+        printed = [json.loads(line) for line in next(self.folder.glob("image*passes")).read_text().splitlines()]
+        self.assertEqual({name for name, _ in printed}, set(names))
+        first = printed[0][1]
+        self.assertEqual(len(set(first.values())), len(first))
+        self.assertEqual({name: passes for name, passes in printed if passes != first}, {})
 
     def test_render_border(self):
         border = """

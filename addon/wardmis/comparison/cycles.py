@@ -19,9 +19,9 @@ from typing import Any
 
 import bpy
 
+from ..exr import read_header
 from . import cycles_settings, interrupt
 from .converge import checkpoints, chosen_spp
-from .exr import read_header
 from .lock import alone
 from .manifest import Manifest
 from .overrides import overridden

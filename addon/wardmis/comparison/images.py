@@ -15,8 +15,8 @@ import bpy
 import numpy as np
 
 from .. import compat
+from ..exr import read_pass
 from .colours import false_colour, relative_difference
-from .exr import read_pass
 from .image_files import write_exr, write_png
 from .report import Report
 

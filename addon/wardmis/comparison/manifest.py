@@ -12,7 +12,7 @@ import os
 from pathlib import Path
 from typing import Any
 
-from .exr import read_pass
+from ..exr import read_pass
 
 
 class Manifest:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The OpenEXR files of a comparison for Python, which cannot read a loaded multi-layer image in Blender. No bpy in here.
+"""OpenEXR files for Python, which cannot read a loaded multi-layer image in Blender. No bpy in here.
 
 Single-part scan-line files, uncompressed or deflated: what `wardmis` writes, and Blender as compat.multilayer_exr() has it.
 """
