@@ -22,12 +22,18 @@ LIGHTS_OF_4_0 = VERSION >= (4, 0, 0)
 # The functions take the mesh, never a layer of it: a call may move the layers, and what was taken from Python before points nowhere.
 
 
+def owner_of_mesh(instance: Any) -> Any:
+    """The object whose own the mesh of a depsgraph instance is; None where geometry nodes made it."""
+    owner = instance.instance_object if instance.is_instance else instance.object
+    return owner if owner.data is not None and owner.data.as_pointer() == instance.object.data.as_pointer() else None
+
+
 @contextlib.contextmanager
 def whole_mesh(instance: Any) -> Iterator[Any]:
     """The mesh of a depsgraph instance with all its arrays, within the block: one in Edit Mode has them in a copy alone."""
     mesh = instance.object.data
-    owner = instance.instance_object if instance.is_instance else instance.object
-    if not mesh.is_editmode or owner.data.as_pointer() != mesh.as_pointer():  # the latter: made by geometry nodes
+    owner = owner_of_mesh(instance)
+    if not mesh.is_editmode or owner is None:
         yield mesh
         return
     try:

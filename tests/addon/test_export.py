@@ -93,6 +93,19 @@ class Meshes(SceneTest):
         self.assertIn("object 'Cloud': volume objects are not supported", notes)
         self.assertIn("object 'Furry': the hair strands of", notes)
 
+    def test_domain_of_smoke_is_no_surface(self):
+        """That of a liquid is one, and so is what pours the smoke."""
+        for kind, domain, seen in (("DOMAIN", "GAS", 0), ("DOMAIN", "LIQUID", 1), ("FLOW", None, 1)):
+            with self.subTest(kind=kind, domain=domain):
+                self.setUp()
+                modifier = self.add_quad().modifiers.new("Fluid", "FLUID")
+                modifier.fluid_type = kind
+                if domain:
+                    modifier.domain_settings.domain_type = domain
+                scene = self.gather()
+                self.assertEqual(len(scene.instances), seen)
+                self.assertEqual(any("smoke and fire are not supported" in n for n in scene.notes), not seen)
+
     def test_mesh_without_faces_is_nothing(self):
         self.add_mesh("Edge", [(0, 0, 0), (1, 0, 0)], [])
         self.assertEqual(self.gather().instances, [])
@@ -298,21 +311,78 @@ class Instances(SceneTest):
         print(f"[{seconds:.2f} s]", end=" ")
         self.assertLess(seconds, 1.0)
 
-    def test_scale_of_zero_is_named_and_left_out(self):
-        self.add_quad("Seen")
-        self.add_quad("Flat").scale.z = 0
+    def test_scale_of_zero_flattens(self):
+        """The transform has no inverse: the mesh takes the shape that it has in the world, and is shared where that is the same."""
+        material = textured_material()
+        vertices = [(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]
+        for name, x in (("First", 0), ("Second", 3)):
+            obj = self.add_mesh(name, vertices, [(0, 1, 7, 6)])
+            obj.data.materials.append(material)
+            obj.data.uv_layers.new()
+            obj.location, obj.scale, obj.rotation_euler = (x, 0, 2), (1, 2, 0), (0, math.radians(90), 0)
+        bpy.data.objects["Second"].data = bpy.data.objects["First"].data
         scene = self.gather()
-        self.assertEqual([i.name for i in scene.instances], ["Seen"])
-        self.assertEqual(scene.notes, ["object 'Flat': a scale of 0, or next to it, cannot be rendered; left out"])
+        self.assertEqual([i.name for i in scene.instances], ["First", "Second"])
+        self.assertEqual(len({i.mesh for i in scene.instances}), 1)
+        mesh = scene.meshes[scene.instances[0].mesh]
+        corners = mesh.positions[mesh.primitives[0].triangles].reshape(-1, 3)
+        np.testing.assert_allclose(corners.min(axis=0), (0, -2, -1), atol=1e-6)
+        np.testing.assert_allclose(corners.max(axis=0), (0, 2, 1), atol=1e-6)
+        self.assertIsNotNone(mesh.uvs)
+        for instance, x in zip(scene.instances, (0, 3), strict=True):
+            np.testing.assert_array_equal(instance.matrix, Matrix.Translation((x, 0, 2)))
+        self.assertEqual(scene.notes, [])
+
+    def test_line_and_point_show_nothing(self):
+        self.add_quad("Line").scale = (1, 0, 0)
+        self.add_quad("Turned").scale, bpy.data.objects["Turned"].rotation_euler = (1, 0, 0), (0.3, 0.4, 0.5)
         self.add_quad("Gone").scale = (0, 0, 0)
-        self.assertEqual(
-            self.gather().notes, ["object 'Flat' and 1 more: a scale of 0, or next to it, cannot be rendered; left out"]
-        )
+        self.add_quad("Small").scale = (1e-13, 1e-13, 1e-13)
+        scene = self.gather()
+        self.assertEqual([i.name for i in scene.instances], ["Small"])
+        self.assertEqual(scene.notes, [])
 
     def test_transform_that_is_not_finite(self):
         self.add_quad("Lost").location.x = math.nan
         with self.assertRaisesRegex(ExportError, "object 'Lost': its transform is not finite"):
             self.gather()
+
+
+class Filters(SceneTest):
+    """What the view layer leaves out."""
+
+    def setUp(self):
+        super().setUp()
+        self.add_quad()
+        self.add("Lamp", bpy.data.lights.new("Lamp", "POINT"))
+        self.scene.world = bpy.data.worlds.new("World")
+        self.scene.world.color = 0.1, 0.2, 0.3
+        self.scene.world.use_nodes = False
+        if compat.uses_nodes(self.scene.world):
+            background = self.scene.world.node_tree.nodes.new("ShaderNodeBackground")
+            background.inputs["Color"].default_value = (0.1, 0.2, 0.3, 1)
+            output = self.scene.world.node_tree.get_output_node("CYCLES")
+            self.scene.world.node_tree.links.new(background.outputs[0], output.inputs["Surface"])
+
+    def seen(self):
+        scene = self.gather()
+        return len(scene.instances), len(scene.lights), any(scene.world.radiance)
+
+    def test_environment_and_surfaces(self):
+        layer = self.scene.view_layers[0]
+        self.assertEqual(self.seen(), (1, 1, True))
+        layer.use_sky = False
+        self.assertEqual(self.seen(), (1, 1, False))
+        layer.use_sky, layer.use_solid = True, False
+        self.assertEqual(self.seen(), (0, 1, True))
+
+    def test_hair(self):
+        quad = bpy.data.objects["Quad"]
+        quad.modifiers.new("Hair", "PARTICLE_SYSTEM")
+        quad.particle_systems[0].settings.type = "HAIR"
+        self.assertEqual(len(self.gather().notes), 1)
+        self.scene.view_layers[0].use_strand = False
+        self.assertEqual(self.gather().notes, [])
 
 
 class Visibility(SceneTest):

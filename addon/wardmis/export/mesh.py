@@ -88,3 +88,9 @@ def assemble(name: str, geometry: Geometry, materials: tuple[int, ...]) -> MeshD
         used = np.flatnonzero(np.bincount(slots))
         primitives = [PrimitiveData(materials[slot], geometry.triangles[slots == slot]) for slot in used]
     return MeshData(name, geometry.positions, geometry.normals, geometry.uvs, primitives)
+
+
+def transformed(mesh: MeshData, linear: np.ndarray) -> MeshData:
+    """The mesh in the shape that a 3x3 matrix without an inverse gives it: a flat one, with the normals of its faces."""
+    positions = (mesh.positions.astype(np.float64) @ linear.T).astype(np.float32)
+    return MeshData(mesh.name, positions, None, mesh.uvs, mesh.primitives)

@@ -14,8 +14,8 @@ from .context import ExportContext, ExportError
 from .image import export_image
 from .light import export_light
 from .material import export_material
-from .mesh import Geometry, assemble, gather_geometry
-from .model import VISIBILITY, ColorInput, InstanceData, MaterialData, SceneData
+from .mesh import Geometry, assemble, gather_geometry, transformed
+from .model import VISIBILITY, ColorInput, InstanceData, MaterialData, SceneData, WorldData
 from .world import export_world
 
 NO_MATERIAL = MaterialData("(no material)", diffuse=ColorInput((0.8, 0.8, 0.8)))  # as Blender shows it
@@ -26,6 +26,8 @@ SEEN_AS_MESHES = {"CURVE", "SURFACE", "META", "FONT"}
 DRAWN_BY_BLENDER = {"GPENCIL", "GREASEPENCIL"}
 # of a transform that the renderer can invert in single precision
 SMALLEST_DETERMINANT = 1e-37
+# of a flattened shape's width to its length, from which on single precision can tell it from a line
+SMALLEST_STRETCH = 1e-7
 INVISIBLE = {"EMPTY", "CAMERA", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE"}
 
 
@@ -47,7 +49,8 @@ def gather_scene(
     context.check_finite(camera_data, f"camera '{camera_data.name}'")
     gatherer.gather_objects(depsgraph)
     context.owner = ""
-    world = export_world(compat.world_of(depsgraph.view_layer_eval, scene), context)
+    layer = depsgraph.view_layer_eval
+    world = export_world(compat.world_of(layer, scene), context) if layer.use_sky else WorldData()
     return SceneData(
         generator,
         film,
@@ -66,6 +69,14 @@ def gather_scene(
 def _note_scene_settings(scene: Any, context: ExportContext) -> None:
     if scene.render.use_motion_blur:
         context.note("motion blur is not supported; the frame is rendered at its own time")
+
+
+def _is_gas_domain(obj: Any) -> bool:
+    """Whether a fluid simulation's smoke is what there is to see of the object, not its mesh."""
+    domains = (
+        m.domain_settings for m in (obj.modifiers if obj else ()) if m.type == "FLUID" and m.fluid_type == "DOMAIN"
+    )
+    return any(settings.domain_type == "GAS" for settings in domains)
 
 
 class _Gatherer:
@@ -93,13 +104,14 @@ class _Gatherer:
             if kind in INVISIBLE:
                 continue
             self.context.owner = obj.name
-            if instance.show_particles:
+            if instance.show_particles and self.view_layer.use_strand:
                 self._note_hair(obj)
             if not instance.show_self:
                 continue
             self._note_light_linking(obj.original)
             if kind == "MESH":
-                self._mesh(obj, instance)
+                if self.view_layer.use_solid:
+                    self._mesh(obj, instance)
             elif kind == "LIGHT":
                 matrix = self._matrix(instance)
                 light = export_light(obj.data, obj.name, matrix, self._hidden_from(obj, instance), self.context)
@@ -107,19 +119,32 @@ class _Gatherer:
                     self.lights.append(light)
             elif kind not in SEEN_AS_MESHES | DRAWN_BY_BLENDER:
                 self.context.note(f"object '{obj.name}': {kind.lower()} objects are not supported; it is left out")
-        self._leave_out_flattened()
+        self._bake_flattened()
 
-    def _leave_out_flattened(self) -> None:
-        """All at once: one matrix at a time would be slow for many instances."""
+    def _bake_flattened(self) -> None:
+        """Gives what a transform without an inverse makes flat a mesh of its own, in the shape that it has in the world.
+
+        All at once: one matrix at a time would be slow for many instances.
+        """
         if not self.instances:
             return
-        determinants = np.linalg.det(np.array([instance.matrix[:3, :3] for instance in self.instances]))
-        flat = np.abs(determinants) < SMALLEST_DETERMINANT
-        names = sorted({instance.name for instance, is_flat in zip(self.instances, flat) if is_flat})
-        if names:
-            others = f" and {len(names) - 1} more" if len(names) > 1 else ""
-            self.context.note(f"object '{names[0]}'{others}: a scale of 0, or next to it, cannot be rendered; left out")
-            self.instances = [instance for instance, is_flat in zip(self.instances, flat) if not is_flat]
+        axes = np.array([instance.matrix[:3, :3] for instance in self.instances])
+        flat = np.abs(np.linalg.det(axes)) < SMALLEST_DETERMINANT
+        baked: dict[tuple[int, bytes], int] = {}
+        kept = []
+        for instance, linear, is_flat in zip(self.instances, axes, flat):
+            if is_flat:
+                stretch = np.linalg.svd(linear, compute_uv=False)
+                if not stretch[1] > SMALLEST_STRETCH * stretch[0]:
+                    continue  # a line or a point has nothing to show
+                key = (instance.mesh, linear.tobytes())
+                if key not in baked:
+                    baked[key] = len(self.meshes)
+                    self.meshes.append(transformed(self.meshes[instance.mesh], linear))
+                instance.mesh = baked[key]
+                instance.matrix[:3, :3] = np.eye(3)
+            kept.append(instance)
+        self.instances = kept
 
     def _matrix(self, instance: Any) -> np.ndarray:
         matrix = np.array(instance.matrix_world)  # a copy: the instance lives for one step of the iteration
@@ -146,6 +171,11 @@ class _Gatherer:
 
     def _add_mesh(self, instance: Any, materials: tuple[int, ...]) -> int | None:
         mesh = instance.object.data
+        if _is_gas_domain(compat.owner_of_mesh(instance)):
+            self.context.note(
+                f"object '{self.context.owner}': smoke and fire are not supported; their domain is left out"
+            )
+            return None
         with_uvs = any(self.materials[m].needs_uv for m in materials)
         key = (mesh.as_pointer(), with_uvs)
         if key not in self._geometry:
