@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Packs the add-on with the renderer inside: one zip that Blender installs as a legacy add-on and, from 4.2, as an
 extension. The shared libraries that not every machine has lie beside the command, so that Blender alone is enough. The
-module for OpenImageIO stays out: the exporter hands on no image that needs it.
+module for OpenImageIO stays out: the exporter hands on no image that needs it. README.md and docs/ go in as pages.
 
 package.py --binary BINARY --out FOLDER"""
 
@@ -13,6 +13,8 @@ import sys
 import tempfile
 import zipfile
 from pathlib import Path
+
+import pages
 
 ROOT = Path(__file__).resolve().parent.parent
 ADDON = ROOT / "addon" / "wardmis"
@@ -83,6 +85,10 @@ def add_on_files() -> list[Path]:
     return [path for path in sorted(ADDON.rglob("*")) if path.is_file() and "__pycache__" not in path.parts]
 
 
+def documents() -> list[Path]:
+    return [ROOT / "README.md", *(path for path in sorted((ROOT / "docs").rglob("*")) if path.is_file())]
+
+
 def write_zip(folder: Path, target: Path) -> None:
     """The same input gives the same bytes: sorted names, no time stamps."""
     with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED, compresslevel=6) as out:
@@ -96,7 +102,7 @@ def write_zip(folder: Path, target: Path) -> None:
 
 def package(binary: Path, out: Path) -> Path:
     target = out / f"wardmis-{version()}.zip"
-    inputs = [binary, ROOT / "LICENSE", Path(__file__), *add_on_files()]
+    inputs = [binary, ROOT / "LICENSE", Path(__file__), Path(pages.__file__), *add_on_files(), *documents()]
     if target.exists() and target.stat().st_mtime >= max(path.stat().st_mtime for path in inputs):
         return target
     out.mkdir(parents=True, exist_ok=True)
@@ -107,6 +113,7 @@ def package(binary: Path, out: Path) -> Path:
             to.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(path, to)
         shutil.copy(ROOT / "LICENSE", folder / "LICENSE")
+        pages.write(ROOT, folder / "documentation")
         add_renderer(folder / "bin", binary)
         unfinished = Path(temporary) / target.name
         write_zip(folder, unfinished)

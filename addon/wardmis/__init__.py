@@ -23,6 +23,7 @@ from . import (  # noqa: E402
     properties,
     rendering,
     scripting,
+    support,
     warning_panels,
     warnings,
 )
@@ -44,6 +45,7 @@ _PARTS = (
     panels,
     data_panels,
     comparison,
+    support,
     scripting,
 )
 

@@ -90,6 +90,7 @@ class WARDMIS_RenderEngine(bpy.types.RenderEngine):
 
     def _fail(self, message: str) -> None:
         self.keep_text("Failed")
+        warnings.failed(message)
         self.report({"ERROR"}, f"WardMIS: {message}")
 
 

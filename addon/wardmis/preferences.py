@@ -9,6 +9,7 @@ from typing import Any
 import bpy
 from bpy.props import StringProperty
 
+from .layout import draw_text
 from .process import RendererError, find_renderer, version
 
 
@@ -51,7 +52,10 @@ class WARDMIS_AP_preferences(bpy.types.AddonPreferences):
         try:
             self.layout.label(text=f"In use: {renderer_path()}", icon="CHECKMARK")
         except RendererError as error:
-            self.layout.label(text=str(error), icon="ERROR")
+            draw_text(self.layout, str(error), "ERROR")
+        row = self.layout.row()
+        row.operator("wardmis.documentation", icon="HELP")
+        row.operator("wardmis.report_problem", icon="URL")
 
 
 _CLASSES = (WARDMIS_OT_test_renderer, WARDMIS_AP_preferences)

@@ -35,6 +35,7 @@ class Warning_:
 
 
 _warnings: dict[tuple[str, str], dict[str, Warning_]] = {}  # by scene and view layer, then by text
+last_failure = ""  # what the last render that failed has said
 _told: set[str] = set()  # in the background, where an animation would say them for every frame
 
 
@@ -63,6 +64,11 @@ def of_scene(scene: Any) -> list[Warning_]:
     for layer in scene.view_layers:
         found |= _warnings.get((scene.name, layer.name), {})
     return list(found.values())
+
+
+def failed(text: str) -> None:
+    global last_failure
+    last_failure = text
 
 
 def count(scene: str, layer: str) -> int:

@@ -72,6 +72,12 @@ class Package(unittest.TestCase):
             self.assertEqual((version.returncode, version.stderr), (0, ""))
             self.assertIn(package.version(), version.stdout)
 
+    def test_the_documentation_is_inside(self):
+        with zipfile.ZipFile(self.zip) as archive:
+            names = set(archive.namelist())
+        for name in ("README.html", "docs/command.html", "docs/images/teapot.png"):
+            self.assertIn(f"wardmis/documentation/{name}", names)
+
     def test_blender_renders_after_installing_it(self):
         with tempfile.TemporaryDirectory() as folder:
             user = {f"BLENDER_USER_{name}": folder for name in ("SCRIPTS", "CONFIG", "DATAFILES", "EXTENSIONS")}
