@@ -112,3 +112,12 @@ def of_an_instance():
     things()
     inner = bpy.data.objects.new("Inner", bpy.data.cameras.new("Inner"))
     instance(collection("Group", inner, box(location=(0, 2, 0.4), scale=(0.4, 0.4, 0.4))), (0, -1, 0))
+
+
+@scene
+def border_uncropped():
+    """The rest of the frame stays empty."""
+    things()
+    settings = bpy.context.scene.render
+    settings.use_border, settings.use_crop_to_border = True, False
+    settings.border_min_x, settings.border_max_x, settings.border_min_y, settings.border_max_y = 0.25, 0.75, 0.25, 0.75

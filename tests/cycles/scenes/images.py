@@ -366,3 +366,10 @@ def emissive():
     sheet(made, divisions=8, size=1.2)
     ground = sheet(diffuse(), size=3)
     ground.location.z = -0.5
+
+
+@scene
+def without_uvs():
+    """A mesh without a UV map shows the image's corner."""
+    face_on()
+    sheet(painted(lambda tree: texture(tree, image("Colours", gradient(4, 4))).outputs["Color"]), maps=())

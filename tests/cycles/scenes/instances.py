@@ -184,3 +184,19 @@ def textured():
     )
     instance(group, (-1, 0, 0.8), (0.9, 0, 0.2))
     instance(group, (1, 0, 0.8), (0.9, 0, -0.2), (-1, 1, 1))
+
+
+@scene
+def linked_library():
+    """A collection of another file."""
+    path = f"{bpy.app.tempdir}/library.blend"
+    group = boxes()
+    group.name = "Linked"
+    bpy.data.libraries.write(path, {group})
+    for made in list(group.objects):
+        bpy.data.objects.remove(made)
+    bpy.data.collections.remove(group)
+    with bpy.data.libraries.load(path, link=True) as (_, wanted):
+        wanted.collections = ["Linked"]
+    stage()
+    instance(bpy.data.collections["Linked"], (-1, 0, 0), (0, 0, 0.4), (2, 2, 2))

@@ -19,6 +19,7 @@ from stage import (
     mesh,
     place,
     scene,
+    sky,
     sphere_mesh,
 )
 
@@ -232,3 +233,37 @@ def mesh_light():
     things()
     lamp_mesh = mesh("Egg", *sphere_mesh(48, 24), emitter((1, 0.6, 0.2), 20))
     lamp_mesh.location, lamp_mesh.rotation_euler, lamp_mesh.scale = (2.6, -2, 1), (0.3, 0, 1), (0.2, 0.2, 0.4)
+
+
+@scene
+def negative():
+    """It takes light away."""
+    things()
+    lamp("SUN", (-2, -3, 4), 2)
+    lamp("POINT", (2, -3, 3), -60, (0.2, 0.5, 1))
+
+
+@scene
+def extremes():
+    """A spot as wide as it can be, an area light that is nearly a beam, and a lamp that is larger than what it lights."""
+    things()
+    lamp("SPOT", (-2, -3, 4), 300, RED, spot_size=math.pi, spot_blend=0.5, shadow_soft_size=0.1)
+    lamp("AREA", (1, -1, 4), 100, GREEN, shape="SQUARE", size=2, spread=math.radians(10))
+    lamp("POINT", (2, 3, 5), 2000, BLUE, shadow_soft_size=2.5)
+
+
+@scene
+def portal():
+    """An area light that is a portal for the sky gives no light of its own."""
+    things()
+    sky((0.5, 0.5, 0.5))
+    lamp("AREA", (0, 0, 3), 200, size=2).data.cycles.is_portal = True
+
+
+@scene
+def touching():
+    """Lamps that stand on the floor."""
+    things()
+    lamp("POINT", (-2.4, -1, 0), 30, RED, shadow_soft_size=0.4)
+    made = lamp("AREA", (2.2, -1, 0.3), 30, GREEN, shape="SQUARE", size=0.6)
+    made.rotation_euler = math.pi / 2, 0, 1

@@ -2,7 +2,7 @@
 """View layers, collections and what objects are seen by."""
 
 import bpy
-from stage import ball, box, collection, diffuse, floor, lamp, place, scene, stage
+from stage import ball, box, collection, diffuse, lamp, place, scene, stage
 
 
 def things():
@@ -121,21 +121,6 @@ def lamp_not_by_diffuse_surfaces():
 
 
 @scene
-def sky_not_by_diffuse_surfaces():
-    from stage import sky, sun
-
-    floor()
-    sky((0.2, 0.5, 0.9))
-    sun()
-    ball()
-    from stage import camera
-
-    camera().data.lens = 18
-    owner = bpy.context.scene.world.cycles_visibility
-    owner.diffuse = False
-
-
-@scene
 def other_scene():
     """Another scene's things are not in this one."""
     things()
@@ -151,3 +136,22 @@ def local_collections():
     one, two = things()
     one.objects.link(two.objects[0])
     two.hide_render = True
+
+
+@scene
+def background_set():
+    """The things of another scene, which stand behind this one's."""
+    things()
+    other = bpy.data.scenes.new("Set")
+    made = ball(diffuse((0.7, 0.7, 0.2)), location=(0, 1.5, 1), radius=1)
+    bpy.context.scene.collection.objects.unlink(made)
+    other.collection.objects.link(made)
+    bpy.context.scene.background_set = other
+
+
+@scene
+def hidden_in_viewports():
+    """What only viewports hide, is rendered."""
+    stage()
+    box(location=(-1.2, 0, 0.8)).hide_viewport = True
+    ball(location=(1.3, 0, 0.9), radius=0.9).display_type = "WIRE"

@@ -5,7 +5,7 @@ import math
 
 import bpy
 import numpy as np
-from stage import add, ball, box, camera, floor, image, scene, sky, sun
+from stage import add, ball, box, camera, floor, image, saved_image, scene, sky, sun
 
 
 def things():
@@ -150,3 +150,56 @@ def without_nodes():
     if bpy.app.version < (5, 0):
         world.use_nodes = False
     bpy.context.scene.world = world
+
+
+@scene
+def negative():
+    """It takes light away."""
+    things()
+    sky((0.1, 0.2, 0.3), -1.0)
+    sun()
+
+
+@scene
+def image_unlinked():
+    """Without coordinates the image lies along the world's axes."""
+    things()
+    tree = sky((1, 1, 1))
+    texture = add(tree, "TexEnvironment", {"image": image("sky", pixels(64, 32), floats=True)})
+    tree.links.new(texture.outputs["Color"], tree.nodes["Background"].inputs["Color"])
+
+
+@scene
+def mirror_ball():
+    things()
+    tree = sky((1, 1, 1))
+    picture = image("ball", pixels(64, 64), floats=True)
+    texture = add(tree, "TexEnvironment", {"image": picture, "projection": "MIRROR_BALL"})
+    tree.links.new(texture.outputs["Color"], tree.nodes["Background"].inputs["Color"])
+
+
+@scene
+def image_of_8_bits():
+    things()
+    tree = sky((1, 1, 1))
+    values = np.clip(pixels(16, 8), 0, 1)
+    texture = add(tree, "TexEnvironment", {"image": saved_image("eight-sky", values)})
+    tree.links.new(texture.outputs["Color"], tree.nodes["Background"].inputs["Color"])
+
+
+@scene
+def not_by_diffuse_surfaces():
+    """Seen by the camera alone."""
+    things()
+    sky((0.2, 0.5, 0.9))
+    sun()
+    bpy.context.scene.camera.data.lens = 18
+    bpy.context.scene.world.cycles_visibility.diffuse = False
+
+
+@scene
+def not_by_the_camera():
+    things()
+    sky((0.2, 0.5, 0.9))
+    bpy.context.scene.camera.data.lens = 18
+    bpy.context.scene.world.cycles_visibility.camera = False
