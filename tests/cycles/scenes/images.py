@@ -373,3 +373,15 @@ def without_uvs():
     """A mesh without a UV map shows the image's corner."""
     face_on()
     sheet(painted(lambda tree: texture(tree, image("Colours", gradient(4, 4))).outputs["Color"]), maps=())
+
+
+@scene(within=0.2, why="nodes calculate with pixels, before these are filtered")
+def calculated():
+    """Magnified to the utmost; of what is linear in the colour it does not matter."""
+    face_on()
+
+    def build(tree):
+        color = texture(tree, image("Colours", gradient(4, 4), floats=True)).outputs["Color"]
+        return add(tree, "Gamma", Color=color, Gamma=3.0).outputs[0]
+
+    sheet(painted(build))

@@ -31,8 +31,9 @@ def shaders(*builders):
 
 
 def colors(tree):
-    """Of numbers, not of stored values: how those are mixed is a matter of images."""
-    return add(tree, "TexImage", {"image": image("Colours", gradient(4, 4), floats=True)}).outputs["Color"]
+    """Of numbers, and not filtered: that is a matter of images."""
+    picture = image("Colours", gradient(4, 4), floats=True)
+    return add(tree, "TexImage", {"image": picture, "interpolation": "Closest"}).outputs["Color"]
 
 
 def math(operation, *numbers, clamp=False):
