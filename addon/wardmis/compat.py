@@ -203,10 +203,14 @@ def add_shader_menu_is_for_blenders_engines() -> bool:
     return not hasattr(bpy.types, "NODE_MT_category_shader_shader")
 
 
+# What has no material is Lambert's grey in Cycles, from 5.0 on the Principled node as it comes.
+NO_MATERIAL_IS_PRINCIPLED = VERSION >= (5, 0, 0)
+
 # The Principled BSDF was renamed and rebuilt in 4.0; the extras are those of its inputs that are left out.
 PRINCIPLED_EXTRAS: tuple[str, ...]
 if VERSION >= (4, 0, 0):
     PRINCIPLED_SPECULAR, PRINCIPLED_SPECULAR_OF_IOR = "Specular IOR Level", True
+    PRINCIPLED_LAYERS = True  # the diffuse reflection is below the dielectric one, and gets what that leaves
     PRINCIPLED_EMISSION = "Emission Color"
     PRINCIPLED_EXTRAS = (
         "Subsurface Weight",
@@ -217,6 +221,7 @@ if VERSION >= (4, 0, 0):
     )
 else:
     PRINCIPLED_SPECULAR, PRINCIPLED_SPECULAR_OF_IOR = "Specular", False
+    PRINCIPLED_LAYERS = False
     PRINCIPLED_EMISSION = "Emission"
     PRINCIPLED_EXTRAS = ("Subsurface", "Transmission", "Clearcoat", "Sheen")
 

@@ -207,11 +207,14 @@ class Materials(SceneTest):
         used = {i.name: scene.materials[scene.meshes[i.mesh].primitives[0].material].name for i in scene.instances}
         self.assertEqual(used, {"One": "Mesh's", "Two": "Object's"})
 
-    def test_no_material_and_empty_slots_are_diffuse_grey(self):
+    def test_no_material_and_empty_slots_are_as_in_cycles(self):
         self.add_quad("None")
         self.add_quad("Empty").data.materials.append(None)
         scene = self.gather()
-        self.assertEqual([m.diffuse.value for m in scene.materials], [(0.8, 0.8, 0.8)])
+        (material,) = scene.materials
+        principled = bpy.app.version >= (5, 0, 0)
+        self.assertEqual(material.diffuse.value, (0.768,) * 3 if principled else (0.8,) * 3)
+        self.assertEqual(material.specular.value, (0.04,) * 3 if principled else (0.0,) * 3)
 
     def test_override_of_the_view_layer(self):
         self.add_quad().data.materials.append(bpy.data.materials.new("Own"))

@@ -58,7 +58,9 @@ def assign(owner: Any, **settings: Any) -> None:
 def make(entry: Scene) -> None:
     set_up(entry)
     entry.build()
-    for world in bpy.data.worlds:  # Cycles draws its map of an image sky as large as 2048 pixels, at a second for each render
+    for (
+        world
+    ) in bpy.data.worlds:  # Cycles draws its map of an image sky as large as 2048 pixels, at a second for each render
         world.cycles.sampling_method, world.cycles.sample_map_resolution = "MANUAL", 256
     for made in bpy.data.objects:  # Cycles moves the rays of shadows away from smooth surfaces
         owner = compat.shadow_terminator_owner(made)

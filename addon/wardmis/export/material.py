@@ -198,11 +198,13 @@ def _principled(use: NodeUse) -> Surface:
     base, metallic = read(use, "Base Color"), read(use, "Metallic")
     dielectric = calc.complement(metallic)
     metal = calc.multiply(base, metallic)
-    gloss = calc.multiply(calc.multiply(_normal_reflectance(use), _tint(use, base)), dielectric)
+    reflectance = _normal_reflectance(use)
+    gloss = calc.multiply(calc.multiply(reflectance, _tint(use, base)), dielectric)
+    below = calc.complement(reflectance.mean()) if compat.PRINCIPLED_LAYERS else constant(1.0)
     anisotropy = read_number(use, "Anisotropic")
     aspect = math.sqrt(1.0 - 0.9 * min(max(anisotropy, 0.0), 1.0))  # as Cycles shares the roughness between the axes
     surface = Surface(
-        diffuse=calc.multiply(base, dielectric),
+        diffuse=calc.multiply(calc.multiply(base, dielectric), below),
         specular=calc.add(metal, gloss),
         rotation=_angle(use, "Anisotropic Rotation"),
         emission=calc.multiply(read(use, compat.PRINCIPLED_EMISSION), read(use, "Emission Strength")),

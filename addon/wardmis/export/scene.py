@@ -15,10 +15,14 @@ from .image import export_image
 from .light import export_light
 from .material import export_material
 from .mesh import Geometry, assemble, gather_geometry, transformed
-from .model import VISIBILITY, ColorInput, InstanceData, MaterialData, SceneData, WorldData
+from .model import VISIBILITY, ColorInput, InstanceData, MaterialData, ScalarInput, SceneData, WorldData
 from .world import export_world
 
-NO_MATERIAL = MaterialData("(no material)", diffuse=ColorInput((0.8, 0.8, 0.8)))  # as Blender shows it
+NO_MATERIAL = MaterialData("(no material)", diffuse=ColorInput((0.8, 0.8, 0.8)))  # as Cycles shows it
+if compat.NO_MATERIAL_IS_PRINCIPLED:  # of roughness 0.5 and IOR 1.5
+    NO_MATERIAL.diffuse = ColorInput((0.768, 0.768, 0.768))  # below the specular reflection
+    NO_MATERIAL.specular = ColorInput((0.04, 0.04, 0.04))
+    NO_MATERIAL.alpha_x = NO_MATERIAL.alpha_y = ScalarInput(0.25)
 
 # their surfaces arrive as meshes of their own in the depsgraph
 SEEN_AS_MESHES = {"CURVE", "SURFACE", "META", "FONT"}

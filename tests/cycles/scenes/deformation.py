@@ -155,6 +155,7 @@ def metaballs():
 def nurbs_surface():
     stage()
     bpy.ops.surface.primitive_nurbs_surface_torus_add(radius=1, location=(0, 0, 0.7))
+    bpy.context.object.data.materials.append(diffuse())
 
 
 @scene

@@ -2,6 +2,7 @@
 """Meshes: their normals, faces, slots and modifiers, in whatever mode the user left them."""
 
 import math
+from typing import Any
 
 import bpy
 import numpy as np
@@ -24,6 +25,10 @@ from stage import (
 )
 
 MAPS = ("UVMap", "Second", "Third")
+# what has no material is, from 5.0 on, the Principled node as it comes: another model of reflection
+PLAIN: dict[str, Any] = (
+    {"within": 0.1, "why": "no material is Principled in Cycles 5"} if bpy.app.version >= (5, 0) else {}
+)
 
 
 @scene
@@ -176,7 +181,7 @@ def negative_scale():
     box(location=(1.1, 0, 0.8), scale=(0.7, -0.7, -0.8))
 
 
-@scene
+@scene(**PLAIN)
 def slots():
     """A colour for each pair of faces, one of them of the object, and faces beyond the slots."""
     stage()
@@ -187,7 +192,7 @@ def slots():
     made.data.polygons.foreach_set("material_index", [0, 1, 2, 1, 0, 2])
 
 
-@scene
+@scene(**PLAIN)
 def no_material():
     stage()
     box().data.materials.clear()
@@ -261,3 +266,10 @@ def two_sided():
     for x, turn in ((-1.5, 0.0), (1.5, math.pi)):
         made = sheet(diffuse((0.7, 0.6, 0.3)), size=1)
         made.location, made.rotation_euler = (x, 0, 1.2), (0.9 + turn, 0, 0.3)
+
+
+@scene
+def coarse():
+    """Normals that are far from the facets' own."""
+    stage()
+    ball(location=(0, 0, 1), fineness=5)
