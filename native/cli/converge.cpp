@@ -135,7 +135,7 @@ int run(const Options& o, const std::string& command) {
                   {"seconds", wallSeconds() - start}});
   if (!reporter.json()) {
     for (const json& sentence : analysis.report["finding"]) fmt::print("{}\n", sentence.get<std::string>());
-    fmt::print("{}\n", page);
+    fmt::print("{}\n{}\n", page, analysis.report["verdict"]["text"].get<std::string>());
   }
   return 0;
 }

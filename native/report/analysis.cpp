@@ -12,6 +12,7 @@
 #include "report/measured.h"
 #include "report/provenance.h"
 #include "report/resample.h"
+#include "report/verdict.h"
 
 namespace wardmis {
 namespace {
@@ -132,6 +133,7 @@ class Reporter {
     if (json t = techniques(); !t.empty()) r["techniques"] = std::move(t);
     if (json m = models(); !m.empty()) r["models"] = std::move(m);
     r["finding"] = finding(r);
+    r["verdict"] = verdict(r);
     a.pictures = gallery(e_, measured_, r["configurations"]);
     a.images = imageFiles(e_, measured_);
     r["images"] = json::array();
@@ -320,14 +322,61 @@ class Reporter {
             {"text", text + "."}};
   }
 
-  // A statistic of m over the same of the baseline, seeds paired.
+  // A statistic of m over the same of another one, seeds paired.
+  template <class Statistic>
+  std::optional<Interval> ratioTo(const Measured& other, const Measured& m, const Statistic& statistic) const {
+    return Bootstrap(commonSeeds_).interval([&](std::span<const uint32_t> draw) -> std::optional<double> {
+      const std::optional<double> own = statistic(m, draw), theirs = statistic(other, draw);
+      return own && theirs && *theirs > 0 ? std::optional(*own / *theirs) : std::nullopt;
+    });
+  }
   template <class Statistic>
   std::optional<Interval> ratioToBase(const Measured& m, const Statistic& statistic) const {
     if (&m == base_) return {};
-    return Bootstrap(commonSeeds_).interval([&](std::span<const uint32_t> draw) -> std::optional<double> {
-      const std::optional<double> own = statistic(m, draw), base = statistic(*base_, draw);
-      return own && base && *base > 0 ? std::optional(*own / *base) : std::nullopt;
-    });
+    return ratioTo(*base_, m, statistic);
+  }
+
+  // Time of m to the target over that of another one; what another renderer's shorter curve does not reach is asked for
+  // where that curve ends. Where there is no time, m's error at equal time over the other's.
+  json advantage(const Measured& other, const Measured& m) const {
+    const auto said = [](const std::optional<Interval>& ratio, const char* what) {
+      json j = toJson(ratio);
+      if (ratio) j["of"] = what;
+      return j;
+    };
+    const auto times = [&](double target) {
+      return ratioTo(other, m, [&](const Measured& x, std::span<const uint32_t> draw) {
+        return timeTo(curvesOf(x, goal_).mean(draw), target);
+      });
+    };
+    std::optional<Interval> ratio = times(goal_.target);
+    if (!ratio && other.configuration->external) {
+      const Curves curves = curvesOf(other, goal_);
+      const auto last = Bootstrap(curves.seeds()).interval([&](std::span<const uint32_t> draw) {
+        return std::optional(curves.mean(draw, curves.checkpoints() - 1).error.back());
+      });
+      if (last && last->high > 0) ratio = times(roundUp(kTargetFactor * last->high));
+    }
+    if (ratio) return said(ratio, "time");
+    return said(ratioTo(other, m,
+                        [&](const Measured& x, std::span<const uint32_t> draw) {
+                          return errorAt(curvesOf(x, goal_).mean(draw), time_);
+                        }),
+                "error");
+  }
+
+  json verdict(const json& report) const {
+    const std::string use = recommended(report);
+    json ratios = json::object();
+    const auto chosen = std::find_if(measured_.begin(), measured_.end(),
+                                     [&](const Measured& m) { return m.configuration->name == use; });
+    for (const Measured& m : measured_)
+      if (m.configuration->name != use)
+        ratios[m.configuration->name] = chosen != measured_.end() ? advantage(m, *chosen) : json();
+    return {{"use", use.empty() ? json() : json(use)},
+            {"text", verdictText(report, use, ratios)},
+            {"ratios", ratios},
+            {"why", contradictions(report)}};
   }
 
   json timeToTarget(const Measured& m, const Goal& goal) const {

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "report/analysis.h"
+#include "report/wording.h"
 
 namespace wardmis {
 namespace {
@@ -23,12 +24,6 @@ std::string interval(const json& i) {
   const auto looksLikeOne = [&](double x) { return x != 1 && std::abs(x - 1) < 0.5 * std::pow(10, -decimals); };
   while (decimals < 4 && (looksLikeOne(low) || looksLikeOne(high))) ++decimals;
   return fmt::format("{:.{}f} [{:.{}f}, {:.{}f}]", mean, decimals, low, decimals, high, decimals);
-}
-
-std::string list(const std::vector<std::string>& parts) {
-  std::string text;
-  for (size_t i = 0; i < parts.size(); ++i) text += (i == 0 ? "" : i + 1 == parts.size() ? " and " : ", ") + parts[i];
-  return text;
 }
 
 // An interval of a ratio that spans more than a factor of ten says nothing.
@@ -54,11 +49,13 @@ std::string withAllPixels(const json& r) {
   }
   std::string text;
   if (!times.empty())
-    text = fmt::format("a relMSE of {} is reached in these shares of the time of {}: {}", target, base, list(times));
+    text = fmt::format("a relMSE of {} is reached in these shares of the time of {}: {}", target, base, listed(times));
   if (!unsure.empty())
-    text += fmt::format("{}a relMSE of {} is not surely reached by {}", text.empty() ? "" : "; ", target, list(unsure));
+    text +=
+        fmt::format("{}a relMSE of {} is not surely reached by {}", text.empty() ? "" : "; ", target, listed(unsure));
   if (!errors.empty())
-    text += fmt::format("{}errors at equal samples are {} of that of {}", text.empty() ? "" : "; ", list(errors), base);
+    text +=
+        fmt::format("{}errors at equal samples are {} of that of {}", text.empty() ? "" : "; ", listed(errors), base);
   if (text.empty()) text = "the rare large samples leave every ratio too unsure to say anything";
   return fmt::format("With all pixels, {}.", text);
 }
@@ -80,7 +77,7 @@ std::vector<std::string> otherLight(const json& r) {
   for (const auto& [light, names] : others)
     said.push_back(fmt::format(
         "{} estimate{} {}, {} {}: these are images of different light, {}, and neither is better for being sooner.",
-        list(names), names.size() == 1 ? "s" : "", light, r["baseline"].get<std::string>(),
+        listed(names), names.size() == 1 ? "s" : "", light, r["baseline"].get<std::string>(),
         base["estimates"].get<std::string>(),
         apart ? "each held against its own reference" : "although both are held against the one reference given"));
   return said;
@@ -146,7 +143,7 @@ std::vector<std::string> finding(const json& r) {
       said.push_back(
           fmt::format("On {}, a {} of {} is reached sooner than by {}, in this share of its {} (95 % intervals "
                       "over {} seeds): {}.",
-                      title, metric, target, base, clock, seeds, list(texts)));
+                      title, metric, target, base, clock, seeds, listed(texts)));
       if (faster.size() > 1 && best["time_to_target"]["ratio"]["high"] < secondLow)
         said.push_back(fmt::format("The fastest is {}.", best["name"].get<std::string>()));
     } else if (baseUnder) {
@@ -160,11 +157,11 @@ std::vector<std::string> finding(const json& r) {
           fmt::format("On {}, no configuration reaches a {} of {} sooner than {} (95 % intervals over {} seeds).",
                       title, metric, target, base, seeds));
     }
-    if (!ties.empty()) said.push_back(fmt::format("No difference from {} is found for {}.", base, list(ties)));
-    if (!slower.empty()) said.push_back(fmt::format("Slower than {}: {}.", base, list(slower)));
-    if (!under.empty()) said.push_back(fmt::format("Under it from their first checkpoint on: {}.", list(under)));
+    if (!ties.empty()) said.push_back(fmt::format("No difference from {} is found for {}.", base, listed(ties)));
+    if (!slower.empty()) said.push_back(fmt::format("Slower than {}: {}.", base, listed(slower)));
+    if (!under.empty()) said.push_back(fmt::format("Under it from their first checkpoint on: {}.", listed(under)));
     if (!unreached.empty() && !baseUnreached)
-      said.push_back(fmt::format("That error is not surely reached by {}.", list(unreached)));
+      said.push_back(fmt::format("That error is not surely reached by {}.", listed(unreached)));
   } else {
     const json& curve = r["configurations"][0]["curve"];
     const json& last = curve.back();
@@ -190,17 +187,17 @@ std::vector<std::string> finding(const json& r) {
       disagree.push_back(fmt::format("{} {}", name, number(own["mape"]["mean"])));
   }
   if (!errors.empty())
-    said.push_back(fmt::format("At equal samples, errors in shares of that of {}: {}.", base, list(errors)));
+    said.push_back(fmt::format("At equal samples, errors in shares of that of {}: {}.", base, listed(errors)));
   if (!disagree.empty())
     said.push_back(
         fmt::format("By MAPE, which weighs the many small errors more, there is more error than of {} at equal samples "
                     "with {}; {} has {}.",
-                    base, list(disagree), base, number(baseline["curve"].back()["mape"]["mean"])));
+                    base, listed(disagree), base, number(baseline["curve"].back()["mape"]["mean"])));
   for (std::string& text : otherLight(r)) said.push_back(std::move(text));
   if (!biased.empty())
     said.push_back(fmt::format(
         "The mean over the seeds differs from the reference for {}: its error does not vanish with more samples.",
-        list(biased)));
+        listed(biased)));
   if (const json& reference = r["reference"]; reference["floor"]["relmse"].is_null())
     said.push_back(
         "The reference's own noise is not known for sure, and is not subtracted: curves flatten as they come near it.");
@@ -209,12 +206,12 @@ std::vector<std::string> finding(const json& r) {
         fmt::format("Parts of the image differ from the reference for {}, as rare light does that few seeds have met: "
                     "whether it is "
                     "chance or bias, more seeds would tell.",
-                    list(unclear)));
+                    listed(unclear)));
   if (!heavy.empty())
     said.push_back(
         fmt::format("Rare large samples carry much of the error of {}: the comparison therefore leaves out the largest "
                     "0.1 % of the pixels of each image, and the curves show both.",
-                    list(heavy)));
+                    listed(heavy)));
   if (r["metric"] != "relmse" && r["configurations"].size() > 1) said.push_back(withAllPixels(r));
   if (r.contains("models"))
     for (const json& m : r["models"]) said.push_back(m["text"]);

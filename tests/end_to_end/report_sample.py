@@ -33,6 +33,7 @@ OBLIGATORY = (
     "version",
     "created",
     "complete",
+    "verdict",
     "finding",
     "baseline",
     "metric",
@@ -230,6 +231,10 @@ def full():
     listed = images()
     report = {
         "schema": "wardmis-report-1", "title": "veach", "version": "0.1.0", "created": "2026-11-25T14:00:00Z", "complete": True,
+        "verdict": {
+            "use": "auto", "text": "Use auto: the noise of equal in 57 % of its time. second-moment is a tie. variance is worse.",
+            "ratios": {}, "why": ["variance has less error than equal at equal samples, and is slower by the clock: its render of as many samples takes 1.4 times as long."],
+        },
         "finding": [
             "auto reaches a relMSE of 0.001 in 0.57 [0.54, 0.61] of the time of equal, second-moment in 0.60 [0.57, 0.64]; variance and equal are a tie.",
             "auto is biased on plate 1: it will not get below a relMSE of about 0.00015.",
@@ -277,6 +282,7 @@ def minimal():
         "baseline": "equal",
         "complete": False,
         "seeds": [1, 2],
+        "verdict": {"use": "equal", "text": "Use equal: x<y>&z is a tie.", "ratios": {}, "why": []},
         "finding": ["equal and x<y>&z are a tie."],
         "images": [],
     }

@@ -138,6 +138,8 @@ class Page(unittest.TestCase):
             self.run_js("return [...document.querySelectorAll('main > section')].map(s => s.id)"), SECTIONS
         )
         self.assertEqual(self.text("h1"), "veach")
+        self.assertEqual(self.text(".verdict"), self.report["verdict"]["text"])
+        self.assertEqual(self.text(".why"), " ".join(self.report["verdict"]["why"]))
         self.assertEqual(self.text(".finding"), " ".join(self.report["finding"]))
         self.assertIn("25 November 2026, 14:00 UTC", self.text(".when"))
         for plot, least in ((".curves", 5), (".forest", 3), (".histogram", 4)):

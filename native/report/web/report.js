@@ -279,6 +279,8 @@
       h("div", { class: "head" }, h("h1", {}, report.title), themeButton()),
       h("p", { class: "when" }, parts.filter((p) => p).join(" · ")),
       report.complete === false ? h("p", { class: "notice" }, "This study ended before its time: the figures are those of the runs that were done.") : null,
+      report.verdict ? h("p", { class: "verdict" }, typeset(report.verdict.text)) : null,
+      report.verdict && report.verdict.why.length ? h("p", { class: "why" }, report.verdict.why.map(typeset).join(" ")) : null,
       h("p", { class: "finding" }, report.finding.map(typeset).join(" ")));
   }
 
