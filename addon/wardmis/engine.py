@@ -246,6 +246,8 @@ class _Render:
             self._warn(event["message"])
         elif kind == "done":
             self.statistics = event.get("stats", {})
+            if event.get("samples") and event.get("seconds"):
+                rendering.note_speed(float(event["samples"]) * self.width * self.height, float(event["seconds"]))
 
     def _show_progress(self, event: dict[str, Any]) -> None:
         self.engine.update_progress(event["fraction"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether Blender is rendering with this add-on's engine, and how to make it end.
+"""Whether Blender is rendering with this add-on's engine, how to make it end, and how fast the last one was.
 
 In a window Blender renders in a thread of its own. An engine that is unregistered meanwhile is freed under it, and Blender crashes.
 Blender is done with the engine when it calls the handlers of the render's end; until then it may be evaluating the scene for it, be in
@@ -22,6 +22,17 @@ LOOK_SECONDS = 0.02
 
 _thread: int | None = None  # that renders
 _stopping = False
+_speed: float | None = None  # camera samples a second, of the last render
+
+
+def speed() -> float | None:
+    return _speed
+
+
+def note_speed(samples: float, seconds: float) -> None:
+    """`samples` of the camera, all pixels together."""
+    global _speed
+    _speed = samples / seconds if samples > 0 and seconds > 0 else None
 
 
 def stopping() -> bool:

@@ -35,6 +35,8 @@ constexpr uint32_t kReferenceChunks = 8;
 constexpr uint32_t kReferenceFactor = 16;        // samples of the reference over those of a run
 constexpr uint64_t kReferenceSeed = 0x5eed0000;  // far from the runs'
 constexpr double kReferenceShare = 0.25;         // of a budget
+constexpr double kFewestSamples = 4;             // of each run, for which a budget must suffice
+constexpr size_t kFewestOfBudget = 4;            // seeds, of which it must; it cuts what are more
 constexpr double kUsedShare = 0.95;              // of a budget; the rest is for the report
 constexpr double kMargin = 1.25;                 // of a time that is said to be enough: speeds vary
 constexpr uint32_t kSurveySamples = 16;
@@ -198,6 +200,8 @@ class Study {
       if (maxSpp_ < 2 || referenceSpp_ < 1)
         throw Error(ExitCode::kFile, path.string() + ": does not say how many samples the runs have",
                     "delete the folder, or choose another");
+      if (const uint32_t cut = countIn(found, "seeds_of_budget"); cut > 0 && cut < experiment_.seeds.size())
+        cutSeeds(cut);
       if (found.contains("started") && found["started"].is_string()) experiment_.started = found["started"];
       return;
     }
@@ -209,6 +213,7 @@ class Study {
             "choose another folder, or delete this one");
     if (!write) return;
     identity["chosen_spp"] = maxSpp_;
+    identity["seeds_of_budget"] = seedsWereCut_ ? json(experiment_.seeds.size()) : json();
     identity["reference_spp"] = referenceSpp_;
     identity["started"] = e.started;
     writeFile(path, identity.dump(2) + '\n');
@@ -227,20 +232,25 @@ class Study {
     if (plan_.budgetSeconds > 0) {
       // besides the runs: what it took to know this, and what the survey and the costs will
       const double overhead = wallSeconds() - start_ + 2 * kSurveySamples * perSample;
-      const double perRun = (kUsedShare * plan_.budgetSeconds - overhead - forReference) /
-                            double(experiment_.configurations.size() * experiment_.seeds.size());
-      const double affordable = perRun / perSample;
-      const double runs = 4 * perSample * double(experiment_.configurations.size() * experiment_.seeds.size());
+      const double available = kUsedShare * plan_.budgetSeconds - overhead - forReference;
+      const double ofASeed = perSample * double(experiment_.configurations.size());  // and a sample
+      double affordable = available / (ofASeed * double(experiment_.seeds.size()));
+      const size_t fewest = std::min(kFewestOfBudget, experiment_.seeds.size());
+      if (affordable < kFewestSamples && available >= kFewestSamples * ofASeed * double(fewest)) {
+        cutSeeds(static_cast<size_t>(available / (kFewestSamples * ofASeed)));
+        affordable = kFewestSamples;
+      }
+      const double runs = kFewestSamples * ofASeed * double(fewest);
       const double enough = plan_.reference.empty() && plan_.referenceSeconds <= 0
                                 ? (runs + overhead) / (kUsedShare - kReferenceShare)
                                 : (runs + overhead + forReference) / kUsedShare;
-      if (affordable < 4)
+      if (affordable < kFewestSamples)
         throw Error(
             ExitCode::kUsage,
             fmt::format("--budget-seconds {}: {:.1f} samples per pixel for each of {} runs, after {:.0f} s for "
                         "the reference",
-                        plan_.budgetSeconds, std::max(0.0, affordable),
-                        experiment_.configurations.size() * experiment_.seeds.size(), forReference),
+                        plan_.budgetSeconds, std::max(0.0, available / (ofASeed * double(fewest))),
+                        experiment_.configurations.size() * fewest, forReference),
             fmt::format("give at least {:.0f} s, or fewer configurations, fewer --seeds or a lower --resolution",
                         std::ceil(kMargin * enough)));
       maxSpp_ = std::bit_floor(static_cast<uint32_t>(std::min(affordable, double(1u << 24))));
@@ -249,6 +259,15 @@ class Study {
     if (forReference > 0)
       referenceSpp_ = static_cast<uint32_t>(
           std::clamp(forReference / double(targets) / kReferenceChunks / perSample, 1.0, double(1u << 24)));
+  }
+
+  // A budget does not suffice for more.
+  void cutSeeds(size_t count) {
+    if (observer_.warn)
+      observer_.warn(fmt::format("the budget suffices for {} of the {} seeds, at {} samples per pixel each", count,
+                                 experiment_.seeds.size(), kFewestSamples));
+    experiment_.seeds.resize(count);
+    seedsWereCut_ = true;
   }
 
   // Mean over the configurations.
@@ -555,6 +574,7 @@ class Study {
   const StudyObserver observer_;
   Experiment experiment_;
   uint32_t maxSpp_ = 0, referenceSpp_ = 0;
+  bool seedsWereCut_ = false;
   double start_;
 };
 

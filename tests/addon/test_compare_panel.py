@@ -19,14 +19,17 @@ import numpy as np
 import wardmis
 from comparison_support import SMALL, ComparisonTest
 from support import ADDON
-from wardmis import compat, scripting, second_blender
+from wardmis import compat, rendering, scripting, second_blender
 from wardmis import layout as panel_layout
 from wardmis.comparison import colours, images, job, operators, panels, plot, properties
+from wardmis.comparison.command_line import progress_text
+from wardmis.comparison.estimate import duration
 from wardmis.comparison.overrides import overridden
 from wardmis.comparison.report import VERDICTS, Report
 from wardmis.comparison.run import divide
 from wardmis.comparison.same_scene import same_but_for_rounding
 from wardmis.exr import read_pass
+from wardmis.properties import ALLOCATIONS
 
 
 class PanelTest(ComparisonTest):
@@ -43,6 +46,7 @@ class PanelTest(ComparisonTest):
         self.addCleanup(properties.forget_report)
         self.settings = self.scene.wardmis_comparison
         self.settings.folder = str(self.folder)
+        self.settings.stop_by, self.settings.percentage = "samples", 100
         self.settings.samples = self.settings.seeds = self.settings.cycles_seeds = 2
         self.settings.use_cycles = False
 
@@ -347,6 +351,20 @@ class Results(PanelTest):
         chosen.a = "variance"
         self.assertIn("variance.exr", chosen.failure)
 
+    def test_what_is_recommended_is_set_by_a_button(self):
+        self.assertFalse(bpy.ops.wardmis.compare_use.poll())
+        bpy.ops.wardmis.compare_open(directory=str(self.folder))
+        report, render = properties.report(), self.scene.wardmis
+        self.assertEqual(report.recommended, "variance")
+        self.assertFalse(operators.is_used(render, report))
+        bpy.ops.wardmis.compare_use()
+        self.assertEqual((render.allocation, render.weights, render.samples_per_hit), ("variance", "balance", 5))
+        self.assertAlmostEqual(render.min_fraction, 0.2, 6)
+        self.assertTrue(operators.is_used(render, report))
+        report.data["verdict"] = None  # of an earlier version
+        self.assertEqual((report.verdict, report.why, report.recommended), ("", [], None))
+        self.assertFalse(bpy.ops.wardmis.compare_use.poll())
+
     def test_view_turns_over(self):
         self.assertFalse(bpy.ops.wardmis.compare_view.poll())
         bpy.ops.wardmis.compare_open(directory=str(self.folder))
@@ -457,6 +475,71 @@ def read_pixels(image: Any) -> np.ndarray:
     return pixels
 
 
+class Times(PanelTest):
+    """What is said of the time before it is taken."""
+
+    def test_in_words(self):
+        expected = {
+            0.4: "0 s",
+            59: "59 s",
+            90: "1 min 30 s",
+            120: "2 min",
+            754: "13 min",
+            3600: "1 h",
+            13924: "3 h 52 min",
+        }
+        expected |= {86400: "24 h", 3 * 86400 + 7200: "3 days 2 h"}
+        self.assertEqual({seconds: duration(seconds) for seconds in expected}, expected)
+        event = {"phase": "runs", "fraction": 0.5, "left": 13000}
+        self.assertEqual(progress_text(event, later=924), "Runs, 50 %, 3 h 52 min left")
+
+    def test_defaults_are_two_minutes_at_half_the_resolution(self):
+        scene = bpy.data.scenes.new("Fresh")
+        self.addCleanup(bpy.data.scenes.remove, scene)
+        self.assertEqual(panels.estimate_text(scene), "About 2 min at 960 × 540, 1 min of it for Cycles")
+
+    def test_samples_take_what_a_render_took(self):
+        self.settings.allocations = {"equal"}
+        self.settings.samples, self.settings.seeds, self.settings.cycles_seeds = 4, 10, 10
+        with mock.patch.object(rendering, "speed", lambda: None):
+            self.assertIn("A guess", panels.estimate_text(self.scene))
+        with mock.patch.object(rendering, "speed", lambda: 16 * 8 * 2.0):  # two samples per pixel a second
+            own = 4 * (10 + 16) / 2
+            self.assertEqual(operators.estimate_of(self.scene).seconds, own)
+            self.assertEqual(panels.estimate_text(self.scene), "About 52 s at 16 × 8")
+            self.settings.use_cycles = True
+            cycles = ((1 + 2 + 4) * 10 + 32 * 4) / 2
+            self.assertEqual(operators.estimate_of(self.scene).seconds, own + cycles)
+            self.settings.percentage = 50
+            self.assertEqual(operators.estimate_of(self.scene).seconds, (own + cycles) / 4)
+        self.settings.allocations = set()
+        self.assertEqual(panels.estimate_text(self.scene), "")
+
+    def test_a_render_is_measured(self):
+        rendering.note_speed(100.0, 2.0)
+        self.assertEqual(rendering.speed(), 50.0)
+        rendering.note_speed(100.0, 0.0)
+        self.assertIsNone(rendering.speed())
+
+    def test_a_comparison_is_measured(self):
+        self.compare()
+        self.assertEqual(operators._speeds(operators.scene_title(self.scene)).own, 16 * 8 / 0.01)
+        self.assertIsNone(operators._speeds("another scene").own)
+
+    def test_the_resolution_is_that_of_the_panel(self):
+        self.settings.percentage, self.settings.use_cycles = 50, True
+        folder = self.compare()
+        self.assertEqual(tuple(bpy.data.images[images.A].size), (8, 4))
+        self.assertEqual(self.scene.render.resolution_percentage, 100)
+        self.assertEqual(read_pass(next((folder / "cycles").glob("*.exr"))).shape[:2], (4, 8))
+
+    def test_checkboxes_choose_one_by_one(self):
+        self.settings.use_albedo, self.settings.use_equal = True, False
+        self.assertEqual(self.settings.allocations, {"variance", "second-moment", "auto", "albedo"})
+        self.assertTrue(self.settings.use_second_moment)
+        self.assertFalse(self.settings.use_equal)
+
+
 class Settings(unittest.TestCase):
     def test_every_setting_is_described_and_shown(self):
         source = (ADDON / "comparison" / "panels.py").read_text()
@@ -467,6 +550,8 @@ class Settings(unittest.TestCase):
                 self.assertTrue(prop.description, prop.identifier)
                 if prop.identifier in {"samples", "seconds"}:  # shown by the name of the choice
                     continue
+                if prop.identifier in {"allocations", *(properties.checkbox(name) for name, *_ in ALLOCATIONS)}:
+                    continue  # the ones are the other
                 self.assertRegex(source, rf'"{prop.identifier}"|chosen\.{prop.identifier}\b')
 
     def test_defaults_are_those_of_the_command(self):
@@ -523,7 +608,16 @@ class Sidebar(PanelTest):
             for layout in map(self.draw, (panels.WARDMIS_IMAGE_PT_compare, panels.WARDMIS_RENDER_PT_compare))
         ]
         self.assertEqual(choices[0], choices[1])
-        for name in ("allocations", "use_scene", "stop_by", "samples", "seeds", "use_cycles", "wardmis.compare"):
+        for name in (
+            "use_second_moment",
+            "use_scene",
+            "percentage",
+            "stop_by",
+            "samples",
+            "seeds",
+            "use_cycles",
+            "wardmis.compare",
+        ):
             self.assertIn(name, choices[0])
 
     def test_table_fits_and_its_signs_are_explained(self):
@@ -535,6 +629,8 @@ class Sidebar(PanelTest):
         self.assertLessEqual(max(map(len, labels)), 22, labels)
         self.assertIn("    second-moment", labels)
         said = " ".join(label.strip() for label in labels)
+        self.assertTrue(said.startswith("Use variance: the noise of equal in 80 % of its time."), said)
+        self.assertIn("auto is better and worse.", said)
         self.assertIn("variance 0.008 × 0.80 (0.72–0.88)", said)
         self.assertIn("The signs: whether a relMSE of 0.01 is reached faster than by equal", said)
         self.assertIn("equal faster", said)

@@ -257,6 +257,17 @@ class Converge(CommandTest):
         )
         self.assertFalse((self.folder / "poor").exists())
 
+    def test_a_budget_cuts_the_seeds_before_it_refuses(self):
+        options = ("--budget-seconds", 8, "--seeds", 100_000, "-c", "equal")
+        done, report = self.study(*options)
+        self.assertLess(len(report["seeds"]), 100_000)
+        self.assertGreaterEqual(len(report["seeds"]), 4)
+        self.assertEqual(report["checkpoints"][-1], 4)
+        said = [e["message"] for e in self.events(done.stdout) if e["event"] == "warning"]
+        self.assertTrue(any("suffices for" in message for message in said), said)
+        _, again = self.study(*options)  # goes on with as many
+        self.assertEqual(again["seeds"], report["seeds"])
+
     def test_a_given_reference_is_held_against(self):
         self.render(
             "--spp",

@@ -19,6 +19,7 @@ import bpy
 from ..process import STOPPED
 from . import interrupt
 from .converge import DEFAULT_CONFIGURATIONS
+from .estimate import duration
 from .run import compare
 
 REDRAW_SECONDS = 0.5
@@ -111,8 +112,8 @@ def main(words: list[str], program: str = "wardmis compare") -> int:
         return 1
     watch.end()
     with open(outcome.report_json, encoding="utf-8") as file:
-        print(*json.load(file)["finding"], sep="\n")
-    print(f"{outcome.report_html}")
+        report = json.load(file)
+    print(*report["finding"], outcome.report_html, report["verdict"]["text"], sep="\n")
     return 0
 
 
@@ -167,8 +168,8 @@ class Watch:
         self.open = False
 
 
-def progress_text(event: dict[str, Any]) -> str:
-    """A progress event in words."""
+def progress_text(event: dict[str, Any], later: float = 0.0) -> str:
+    """A progress event in words; `later`: seconds of what comes after what it tells of."""
     parts = [str(event.get("phase", "")).capitalize()]
     if event.get("configuration"):
         parts.append(str(event["configuration"]))
@@ -176,8 +177,7 @@ def progress_text(event: dict[str, Any]) -> str:
         parts.append(f"seed {event['seed']}")
     parts.append(f"{100 * float(event.get('fraction') or 0):.0f} %")
     if event.get("left") is not None:
-        minutes, seconds = divmod(int(event["left"]), 60)
-        parts.append(f"{minutes}:{seconds:02} left")
+        parts.append(f"{duration(float(event['left']) + later)} left")
     return ", ".join(parts)
 
 

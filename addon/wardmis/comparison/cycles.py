@@ -35,6 +35,7 @@ CUT_OFF_SECONDS = 0.01  # Cycles states its time without what is below
 ONE_PIXEL_RENDERS = 3
 PROBE_SAMPLES = 8  # of the render that tells what a sample costs, where there is a budget
 FEWEST_OF_BUDGET = 4  # samples for which a budget must suffice, as WardMIS' own
+FEWEST_SEEDS_OF_BUDGET = 4  # it cuts what are more, as WardMIS' own
 BUDGET_SHARE = 0.9  # the rest is for what cannot be foreseen
 MARGIN = 1.25  # of a time that is said to be enough: speeds vary
 CERTAIN = 5  # a CPU time is stated where it is so many times as large as what the synchronisation varies by
@@ -154,18 +155,22 @@ class _Renders:
         sample = max(0.0, wall - synchronisation) / PROBE_SAMPLES
         spent = time.monotonic() - self.began
 
-        def seconds(spp: int) -> float:
+        def seconds(spp: int, seeds: int) -> float:
             points = checkpoints(spp)
             run = len(points) * synchronisation + sum(points) * sample
             reference = synchronisation + self.plan.reference_of(spp) * sample
-            return spent + len(self.plan.seeds) * run + REFERENCE_IMAGES * reference
+            return spent + seeds * run + REFERENCE_IMAGES * reference
 
         possible = [spp for spp in checkpoints(most) if spp >= FEWEST_OF_BUDGET] or [most]
-        fitting = [spp for spp in possible if seconds(spp) <= BUDGET_SHARE * budget]
+        seeds = len(self.plan.seeds)
+        fitting = [spp for spp in possible if seconds(spp, seeds) <= BUDGET_SHARE * budget]
+        fewest, fewest_seeds = possible[0], min(FEWEST_SEEDS_OF_BUDGET, seeds)
+        if not fitting and seconds(fewest, fewest_seeds) <= BUDGET_SHARE * budget:
+            return fewest  # of as many seeds as the time allows
         if not fitting:
-            fewest, needed = possible[0], seconds(possible[0])
+            needed = seconds(fewest, fewest_seeds)
             raise RuntimeError(
-                f"WardMIS: {fewest} samples per pixel by Cycles take about {needed:.0f} s here, with {len(self.plan.seeds)} "
+                f"WardMIS: {fewest} samples per pixel by Cycles take about {needed:.0f} s here, with {fewest_seeds} "
                 f"seeds and the reference, and its half of the budget is {budget:.3g} s; give at least "
                 f"{math.ceil(MARGIN * 2 * needed / BUDGET_SHARE)} s in all, or fewer seeds of Cycles or a lower resolution, "
                 f"and another output folder; {self.place} keeps the report without it"

@@ -29,6 +29,7 @@ class Stage:
     name: str  # what messages call it
     command: list[str]
     explain: Callable[[str], str] = str  # what a failure says, to its user
+    seconds: float = 0.0  # that it may take, as far as is known before
     then: Callable[[Job], list[Stage]] | None = None  # once it has ended well: what comes next, before all others
 
 
@@ -103,7 +104,7 @@ class Job:
         with contextlib.suppress(KeyError, TypeError, ValueError):
             if event.get("event") == "progress":
                 self.fraction = float(event["fraction"])
-                self.text = progress_text(event)
+                self.text = progress_text(event, sum(stage.seconds for stage in self._stages))
 
     def _fail(self, message: str) -> None:
         self.failure = self._stage.explain(message)

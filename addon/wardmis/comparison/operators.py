@@ -6,6 +6,8 @@ from __future__ import annotations
 import dataclasses
 import functools
 import hashlib
+import math
+import os
 import re
 import tempfile
 import types
@@ -15,7 +17,7 @@ from typing import Any
 import bpy
 from bpy.props import EnumProperty, StringProperty
 
-from .. import second_blender
+from .. import rendering, second_blender
 from ..operators import export_command
 from ..preferences import renderer_path
 from ..process import RendererError
@@ -23,6 +25,7 @@ from ..properties import ALLOCATIONS
 from . import child, images, job, plot, properties
 from .converge import OWN, Outcome, Study, arguments, explain_half
 from .cycles import require_cycles
+from .estimate import Estimate, Speeds, estimate
 from .overrides import overridden
 from .run import CYCLES_FOLDER, SCENE_NAME, check_study, divide, forget, prepare, scene_title, threads_of
 from .same_scene import same_but_for_rounding, settle
@@ -47,6 +50,39 @@ def study_of(scene: Any) -> Study:
         title=scene_title(scene),
         threads=threads_of(scene),
     )
+
+
+def percentage_of(scene: Any) -> int:
+    """Of the full resolution, at which the scene is compared."""
+    return max(1, round(scene.render.resolution_percentage * scene.wardmis_comparison.percentage / 100))
+
+
+def size_of(scene: Any) -> tuple[int, int]:
+    """Of the images that are compared, in pixels, without a border."""
+    render, percentage = scene.render, percentage_of(scene)
+    return max(1, render.resolution_x * percentage // 100), max(1, render.resolution_y * percentage // 100)
+
+
+def estimate_of(scene: Any) -> Estimate:
+    """How long what the panel says takes."""
+    settings = scene.wardmis_comparison
+    width, height = size_of(scene)
+    render, share = scene.render, 1.0
+    if render.use_border:
+        share = (render.border_max_x - render.border_min_x) * (render.border_max_y - render.border_min_y)
+    study = study_of(scene)
+    threads = study.threads or os.cpu_count() or 1
+    cycles_seeds = settings.cycles_seeds if settings.use_cycles else None
+    return estimate(study, max(1, round(width * height * share)), cycles_seeds, _speeds(study.title), threads)
+
+
+def _speeds(title: str) -> Speeds:
+    """Of the last comparison of the scene, else of the last render."""
+    report = properties.report()
+    if report is not None and report.data.get("title") == title:
+        own, cycles = report.speeds()
+        return Speeds(own, cycles)
+    return Speeds(rendering.speed())
 
 
 def home(scene: Any) -> Path:
@@ -90,7 +126,8 @@ class _Asked:
         if self.settings.use_cycles:
             require_cycles(scene)
         self.home = home(scene)
-        self.percentage = scene.render.resolution_percentage
+        self.percentage = percentage_of(scene)
+        self.estimate = estimate_of(scene)
         self.staging = staging
         self.needs_copy = self.settings.use_cycles or second_blender.wanted()
         self._cycles = functools.partial(
@@ -115,19 +152,22 @@ class _Asked:
         if new:
             comparison.failed = lambda: forget(outcome)
         if not settings.use_cycles:
-            return [self._own(study, outcome)]
+            return [self._own(study, outcome, self.estimate.own)]
         stages = []
         plan, study = divide(study, settings.cycles_seeds, None, settings.cycles_as_is)
+        seconds = self.estimate.own
         if study.budget_seconds is not None:  # finds out how many samples there are to be
-            stages.append(self._own(study, outcome))
+            stages.append(self._own(study, outcome, seconds))
+            seconds = 0.0
         renders = folder / CYCLES_FOLDER
         outcome.manifest = renders / "manifest.json"
-        stages.append(job.Stage("Cycles", self._cycles(renders, outcome.scene, plan)))
-        return [*stages, self._own(study, outcome)]
+        command = self._cycles(renders, outcome.scene, plan)
+        stages.append(job.Stage("Cycles", command, seconds=self.estimate.cycles))
+        return [*stages, self._own(study, outcome, seconds)]
 
-    def _own(self, study: Study, outcome: Outcome) -> job.Stage:
+    def _own(self, study: Study, outcome: Outcome, seconds: float) -> job.Stage:
         command = [str(self.binary), *arguments(study, self.render_settings, outcome)]
-        return job.Stage("the renderer", command, explain_half if self.settings.use_cycles else str)
+        return job.Stage("the renderer", command, explain_half if self.settings.use_cycles else str, seconds)
 
 
 def _as_it_is(group: Any) -> Any:
@@ -270,6 +310,39 @@ class WARDMIS_OT_compare_view(bpy.types.Operator):
         return {"FINISHED"}
 
 
+class WARDMIS_OT_compare_use(bpy.types.Operator):
+    bl_idname = "wardmis.compare_use"
+    bl_label = "Use This"
+    bl_description = (
+        "Set the scene to what the comparison recommends: its allocation, weights and other settings of the sampling"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, _context: Any) -> bool:
+        report = properties.report()
+        return report is not None and report.recommended is not None
+
+    def execute(self, context: Any) -> set[str]:
+        report = properties.report()
+        if report is None or report.recommended is None:
+            return {"CANCELLED"}
+        for name, value in report.settings(report.recommended).items():
+            setattr(context.scene.wardmis, name, value)
+        return {"FINISHED"}
+
+
+def is_used(settings: Any, report: Any) -> bool:
+    """Whether the scene is set to what `report` recommends."""
+    wanted = report.settings(report.recommended)
+    return all(
+        math.isclose(getattr(settings, name), value, rel_tol=1e-5)
+        if isinstance(value, float)
+        else getattr(settings, name) == value
+        for name, value in wanted.items()
+    )
+
+
 class WARDMIS_OT_compare_close(bpy.types.Operator):
     bl_idname = "wardmis.compare_close"
     bl_label = "Close Results"
@@ -307,6 +380,7 @@ _CLASSES = (
     WARDMIS_OT_compare_cancel,
     WARDMIS_OT_compare_open,
     WARDMIS_OT_compare_view,
+    WARDMIS_OT_compare_use,
     WARDMIS_OT_compare_close,
     WARDMIS_OT_compare_report,
 )

@@ -10,7 +10,9 @@ import bpy
 from .. import compat
 from ..layout import draw_text, is_narrow
 from ..panels import RenderPanel
+from ..properties import ALLOCATIONS
 from . import job, operators, properties
+from .estimate import duration
 
 VERDICT_ICONS = {
     "faster": "CHECKMARK",
@@ -31,12 +33,12 @@ def draw_choices(layout: Any, settings: Any) -> None:
     body.use_property_decorate = False
     grid = body.grid_flow(columns=1 if narrow else 2, align=True)
     grid.use_property_split = False
-    grid.prop(settings, "allocations")
-    row = body.row()
-    row.use_property_split = False
-    row.prop(settings, "use_scene", toggle=True)
+    for name, *_ in ALLOCATIONS:
+        grid.prop(settings, properties.checkbox(name))
+    grid.prop(settings, "use_scene")
     body.row().prop(settings, "stop_by", expand=True)
     body.prop(settings, settings.stop_by)
+    body.prop(settings, "percentage")
     body.prop(settings, "seeds")
     if narrow:
         column = body.column()
@@ -55,13 +57,29 @@ def draw_choices(layout: Any, settings: Any) -> None:
         body.prop(settings, "folder")
 
 
-def draw_progress(layout: Any) -> None:
+def estimate_text(scene: Any) -> str:
+    """What pressing Compare means."""
+    try:
+        found = operators.estimate_of(scene)
+    except RuntimeError:  # nothing is chosen
+        return ""
+    width, height = operators.size_of(scene)
+    text = f"About {duration(found.seconds)} at {width} × {height}"
+    if found.cycles:
+        text += f", {duration(found.cycles)} of it for Cycles"
+    return f"{text}. A guess: after a render (F12) it is better known" if found.guessed else text
+
+
+def draw_progress(layout: Any, scene: Any) -> None:
     current = job.current()
     if job.running() and current is not None:
         compat.progress_bar(layout, current.fraction)
         draw_text(layout, current.text, "TIME")
         layout.operator(operators.WARDMIS_OT_compare_cancel.bl_idname, icon="CANCEL")
         return
+    text = estimate_text(scene)
+    if text:
+        draw_text(layout, text, "TIME")
     row = layout.row()
     row.scale_y = 1.3
     row.operator(operators.WARDMIS_OT_compare.bl_idname, icon="RENDER_STILL")
@@ -76,6 +94,7 @@ def draw_results(layout: Any) -> None:
     report, chosen = properties.report(), properties.results()
     if report is None:
         return
+    _draw_verdict(layout.box(), report)
     view = operators.WARDMIS_OT_compare_view.bl_idname
     column = layout.column(align=True)
     column.prop(chosen, "a")
@@ -93,6 +112,18 @@ def draw_results(layout: Any) -> None:
     column.operator(operators.WARDMIS_OT_compare_close.bl_idname, icon="X")
 
 
+def _draw_verdict(box: Any, report: Any) -> None:
+    if not report.verdict:  # an earlier report
+        return
+    draw_text(box, report.verdict, "INFO")
+    if report.recommended is not None:
+        row = box.row()
+        used = operators.is_used(bpy.context.scene.wardmis, report)
+        row.enabled = not used
+        text = "In Use" if used else operators.WARDMIS_OT_compare_use.bl_label
+        row.operator(operators.WARDMIS_OT_compare_use.bl_idname, text=text, icon="CHECKMARK")
+
+
 def _draw_table(box: Any, report: Any) -> None:
     """The name of a configuration, and its figures below: the sidebar is narrow."""
     seconds, target, rows = report.equal_seconds, report.target, report.rows()
@@ -108,6 +139,8 @@ def _draw_table(box: Any, report: Any) -> None:
         figures = f"{row.error} × {row.ratio}" if row.ratio else row.error
         if figures:
             draw_text(table, figures, "BLANK1")
+    for why in report.why:
+        draw_text(box, why)
     verdicts = [verdict for verdict in VERDICT_ICONS if any(row.verdict == verdict for row in rows)]
     if not verdicts:
         return
@@ -130,7 +163,7 @@ class WARDMIS_RENDER_PT_compare(RenderPanel, bpy.types.Panel):
 
     def draw(self, context: Any) -> None:
         draw_choices(self.layout, context.scene.wardmis_comparison)
-        draw_progress(self.layout)
+        draw_progress(self.layout, context.scene)
         draw_results(self.layout)
 
 
@@ -143,7 +176,7 @@ class WARDMIS_IMAGE_PT_compare(bpy.types.Panel):
 
     def draw(self, context: Any) -> None:
         draw_choices(self.layout, context.scene.wardmis_comparison)
-        draw_progress(self.layout)
+        draw_progress(self.layout, context.scene)
 
 
 class WARDMIS_IMAGE_PT_results(bpy.types.Panel):

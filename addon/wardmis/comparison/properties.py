@@ -19,7 +19,7 @@ from .report import Report
 
 STOPS = (
     ("samples", "Samples", "Renders of 1, 2, 4 ... samples per pixel up to a number"),
-    ("seconds", "Seconds", "As many renders as a time allows; with Cycles, half of it is Cycles'"),
+    ("seconds", "Time", "As many renders as a time allows; with Cycles, half of it is Cycles'"),
 )
 VIEWS = (
     ("A", "A", "The first image"),
@@ -45,18 +45,26 @@ class WARDMIS_PG_comparison(bpy.types.PropertyGroup):
         description="The settings in the panels above as a configuration of their own, weights included",
         default=False,
     )
-    stop_by: EnumProperty(name="Stop by", description="What ends the comparison", items=STOPS, default="samples")
+    stop_by: EnumProperty(name="Stop by", description="What ends the comparison", items=STOPS, default="seconds")
     samples: IntProperty(
         name="Samples", description="The largest number of camera samples per pixel", default=64, min=2, soft_max=4096
     )
     seconds: FloatProperty(
         name="Seconds",
-        description="Time for everything, the reference included",
-        default=300.0,
+        description="Time for everything, the reference and Cycles included. Where it does not suffice for all seeds there are fewer",
+        default=120.0,
         min=1.0,
         soft_max=36000.0,
         max=1e7,
         precision=0,
+    )
+    percentage: IntProperty(
+        name="Resolution",
+        description="Of the scene's resolution. Which allocation is best hardly depends on it, and the time does",
+        default=50,
+        min=1,
+        max=100,
+        subtype="PERCENTAGE",
     )
     seeds: IntProperty(
         name="Seeds",
@@ -85,6 +93,24 @@ class WARDMIS_PG_comparison(bpy.types.PropertyGroup):
         description="Each comparison gets a folder in it. Empty: beside the file, or in the folder for temporary files where there is none",
         subtype="DIR_PATH",
     )
+
+
+def checkbox(allocation: str) -> str:
+    """The property by which an allocation is chosen on its own: a click into a list of several would leave the others out."""
+    return "use_" + allocation.replace("-", "_")
+
+
+def _checkbox(allocation: str, label: str, text: str) -> Any:
+    def get(self: Any) -> bool:
+        return allocation in self.allocations
+
+    def set_(self: Any, value: bool) -> None:
+        self.allocations = self.allocations | {allocation} if value else self.allocations - {allocation}
+
+    return BoolProperty(name=label, description=text, get=get, set=set_)
+
+
+WARDMIS_PG_comparison.__annotations__.update({checkbox(item[0]): _checkbox(*item) for item in ALLOCATIONS})
 
 
 def _image_items(_self: Any, _context: Any) -> list[tuple[str, str, str]]:

@@ -19,6 +19,18 @@ VERDICTS = {
     "under from the start": "under the target from the start",
     "not compared": "the baseline has no time",
 }
+# of a configuration of the command: by its name, that of the scene's setting
+SETTINGS = {
+    "allocation": "allocation",
+    "weights": "weights",
+    "integrand": "integrand",
+    "integrator": "integrator",
+    "sampler": "sampler",
+    "samples_per_hit": "samples_per_hit",
+    "pilot_spp": "pilot_samples",
+    "min_fraction": "min_fraction",
+    "max_depth": "max_depth",
+}
 
 
 @dataclass
@@ -100,6 +112,38 @@ class Report:
         """As it is written."""
         name = self.data.get("metric", "relmse")
         return next((m["label"] for m in self.data.get("metrics", []) if m["name"] == name), str(name))
+
+    @property
+    def verdict(self) -> str:
+        """What to use, and what it brings, in a line; nothing in earlier reports."""
+        return str((self.data.get("verdict") or {}).get("text", ""))
+
+    @property
+    def why(self) -> list[str]:
+        """Of configurations that are better in one column and worse in another."""
+        return list((self.data.get("verdict") or {}).get("why", []))
+
+    @property
+    def recommended(self) -> str | None:
+        """The configuration to use."""
+        return (self.data.get("verdict") or {}).get("use")
+
+    def speeds(self) -> tuple[float | None, float | None]:
+        """Camera samples a second by the wall clock: of the slowest configuration, and of the slowest other renderer."""
+        pixels = self.data["width"] * self.data["height"]
+        own: list[float] = []
+        others: list[float] = []
+        for c in self.configurations:
+            last = c["curve"][-1]
+            if last.get("wall") and last["wall"]["mean"] > 0:
+                list_ = own if c.get("estimates") else others
+                list_.append(pixels * last["spp"] / last["wall"]["mean"])
+        return min(own, default=None), min(others, default=None)
+
+    def settings(self, name: str) -> dict[str, Any]:
+        """Of a configuration, by the names that a scene's settings have."""
+        found = next(c["settings"] for c in self.configurations if c["name"] == name)
+        return {SETTINGS[key]: value for key, value in found.items() if key in SETTINGS}
 
     def rows(self) -> list[Row]:
         return [_row(c) for c in self.configurations]

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How long a comparison takes, before it is begun, and times in words. No bpy in here."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .converge import Study, checkpoints
+
+REFERENCE_FACTOR = 16  # samples of the command's reference, over those of a run
+CYCLES_REFERENCE_FACTOR = 32  # of all of Cycles' reference images
+GUESS = 400_000.0  # camera samples a second of a thread, where nothing has been rendered yet
+
+
+@dataclass
+class Speeds:
+    """Camera samples a second, of all threads together; where they are not known, none."""
+
+    own: float | None = None
+    cycles: float | None = None
+
+
+@dataclass
+class Estimate:
+    own: float  # seconds
+    cycles: float
+    guessed: bool  # from no render of the scene
+
+    @property
+    def seconds(self) -> float:
+        return self.own + self.cycles
+
+
+def estimate(study: Study, pixels: int, cycles_seeds: int | None, speeds: Speeds, threads: int) -> Estimate:
+    """Of `study` at so many `pixels`; `cycles_seeds` is none without Cycles."""
+    if study.budget_seconds is not None:
+        half = study.budget_seconds / 2 if cycles_seeds is not None else 0.0
+        return Estimate(study.budget_seconds - half, half, False)
+    guess = GUESS * threads
+    samples = study.max_spp * (len(study.configurations) * study.seeds + REFERENCE_FACTOR)
+    own = pixels * samples / (speeds.own or guess)
+    if cycles_seeds is None:
+        return Estimate(own, 0.0, speeds.own is None)
+    samples = sum(checkpoints(study.max_spp)) * cycles_seeds + CYCLES_REFERENCE_FACTOR * study.max_spp
+    cycles = pixels * samples / (speeds.cycles or speeds.own or guess)
+    return Estimate(own, cycles, speeds.own is None)
+
+
+def duration(seconds: float) -> str:
+    """'40 s', '1 min 30 s', '12 min', '3 h 52 min', '2 days 5 h'."""
+    s = max(0, round(seconds))
+    if s < 60:
+        return f"{s} s"
+    if s < 300 and s % 60:
+        return f"{s // 60} min {s % 60} s"
+    minutes = round(s / 60)
+    if minutes < 60:
+        return f"{minutes} min"
+    hours, minutes = divmod(minutes, 60)
+    if hours < 48:
+        return f"{hours} h {minutes} min" if minutes else f"{hours} h"
+    days, hours = divmod(hours, 24)
+    return f"{days} days {hours} h" if hours else f"{days} days"
