@@ -186,13 +186,14 @@ class Background(PanelTest):
         bpy.ops.wardmis.compare_cancel()
         done = self.wait(10)
         self.assertEqual((done.failure, done.stopping), ("", True))
-        self.assertIn("Compare goes on from there", done.text)
+        self.assertEqual(done.text, job.CANCELLED)
         with mock.patch.dict(os.environ, {"WARDMIS_FAKE": "hang"}):
             bpy.ops.wardmis.compare()
             self.started()
             bpy.ops.wardmis.compare_cancel()
             bpy.ops.wardmis.compare_cancel()
         self.assertFalse(job.running())
+        self.assertEqual(job.current().text, job.CANCELLED)
         self.gone()
 
     def started(self) -> None:
@@ -216,6 +217,25 @@ class Background(PanelTest):
         self.assertFalse(process.running())
         self.assertIsNone(job.current())
         self.assertIsNone(properties.report())
+
+    def test_whoever_opens_another_file_is_warned(self):
+        from wardmis.comparison import leaving
+
+        browser = types.SimpleNamespace(active_operator=types.SimpleNamespace(bl_idname=leaving.OPERATOR))
+        panel, context = leaving.WARDMIS_FILEBROWSER_PT_leaving, types.SimpleNamespace(space_data=browser)
+
+        def menu() -> list[str]:
+            layout = Layout()
+            layout.separator = layout.part
+            leaving._draw(types.SimpleNamespace(layout=layout), None)
+            return [label.strip() for label in layout.labels]
+
+        self.assertEqual((menu(), panel.poll(context)), ([], False))
+        with mock.patch.dict(os.environ, {"WARDMIS_FAKE": "slow"}):
+            bpy.ops.wardmis.compare()
+        self.assertEqual((menu(), panel.poll(context)), ([leaving.TEXT], True))
+        for name in leaving.MENUS:
+            self.assertIn(leaving._draw, getattr(bpy.types, name)._dyn_ui_initialize())
 
     def test_unregistering_ends_it(self):
         with mock.patch.dict(os.environ, {"WARDMIS_FAKE": "slow"}):
@@ -343,6 +363,27 @@ class Results(PanelTest):
         chosen.a, chosen.b, chosen.top = "auto", "auto", 2.0
         self.assertEqual(chosen.failure, "")
         self.assertIn("auto", bpy.data.images[images.A]["wardmis"])
+
+    def test_scale_is_such_that_a_difference_is_seen(self):
+        bpy.ops.wardmis.compare_open(directory=str(self.folder))
+        chosen = properties.results()
+        self.assertTrue(chosen.fit)
+        report = properties.report()
+
+        def fitting(a: str, b: str) -> float:
+            return colours.fitting_top(
+                colours.relative_difference(read_pass(report.image(a)), read_pass(report.image(b)))
+            )
+
+        self.assertAlmostEqual(chosen.top, fitting(chosen.a, chosen.b), 5)
+        chosen.b = "variance"
+        self.assertAlmostEqual(chosen.top, fitting(chosen.a, "variance"), 5)
+        chosen.top = 3.0
+        self.assertFalse(chosen.fit)
+        chosen.b = "auto"
+        self.assertEqual(chosen.top, 3.0)
+        chosen.fit = True
+        self.assertAlmostEqual(chosen.top, fitting(chosen.a, "auto"), 5)
 
     def test_images_that_are_gone_are_named(self):
         bpy.ops.wardmis.compare_open(directory=str(self.folder))
@@ -647,6 +688,15 @@ class Colours(unittest.TestCase):
         }
         for t, rgb in expected.items():
             np.testing.assert_allclose(colours.inferno(np.array([t]))[0], rgb, atol=0.03)
+
+    def test_top_fits_all_but_a_hundredth(self):
+        values = np.full(1000, 0.013)
+        values[:5], values[5] = 700.0, np.nan
+        self.assertAlmostEqual(colours.fitting_top(values), 0.02)
+        self.assertAlmostEqual(colours.fitting_top(np.full(9, 0.05)), 0.05)
+        self.assertAlmostEqual(colours.fitting_top(np.full(9, 7.0)), 10.0)
+        self.assertEqual(colours.fitting_top(np.zeros(9)), colours.SMALLEST_TOP)
+        self.assertEqual(colours.fitting_top(np.full(9, np.nan)), colours.SMALLEST_TOP)
 
     def test_scale_stands_beside(self):
         values = np.full((120, 40), 0.5)

@@ -5,12 +5,12 @@
 Cycles, and the result shown. The parts without bpy say so.
 """
 
-from . import command_line, images, job, operators, panels, properties
+from . import command_line, images, job, leaving, operators, panels, properties
 from .run import compare, prepare
 
 __all__ = ["compare", "prepare", "register", "unregister"]
 
-_PARTS = (images, properties, operators, panels, job, command_line)
+_PARTS = (images, properties, operators, panels, job, leaving, command_line)
 
 
 def register() -> None:

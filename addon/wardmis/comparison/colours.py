@@ -20,6 +20,8 @@ INFERNO = np.array(
 NOT_A_NUMBER = (0.0, 0.6, 1.0)  # a blue that inferno has not
 EPSILON = 0.01  # as in relMSE
 
+SMALLEST_TOP = 1e-4  # of a scale
+
 # of the scale's letters, in pixels of the image a pixel of theirs: legible where the image is shown as large as it is
 SMALLEST_LETTERS, LARGEST_LETTERS = 2, 6
 HEIGHT_OF_LETTERS = 100  # of the image, for each such pixel
@@ -56,6 +58,14 @@ def relative_difference(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """|a - b| / (|b| + EPSILON), mean of the three channels."""
     a, b = a[..., :3].astype(np.float64), b[..., :3].astype(np.float64)
     return (np.abs(a - b) / (np.abs(b) + EPSILON)).mean(axis=-1)
+
+
+def fitting_top(values: np.ndarray) -> float:
+    """The round number (1, 2 or 5 times a power of ten) from which on 1 % of the values at most are cut off."""
+    finite = values[np.isfinite(values)]
+    wanted = max(float(np.percentile(finite, 99)) if finite.size else 0.0, SMALLEST_TOP)
+    decade = int(np.floor(np.log10(wanted) + 1e-9))
+    return next(top for top in (float(f"{step}e{decade}") for step in (1, 2, 5, 10)) if top >= wanted * (1 - 1e-9))
 
 
 def false_colour(values: np.ndarray, top: float) -> np.ndarray:

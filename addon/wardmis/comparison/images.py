@@ -16,7 +16,7 @@ import numpy as np
 
 from .. import compat
 from ..exr import read_pass
-from .colours import false_colour, relative_difference
+from .colours import false_colour, fitting_top, relative_difference
 from .image_files import write_exr, write_png
 from .report import Report
 
@@ -24,15 +24,23 @@ A, B, DIFFERENCE, PLOT = "WardMIS A", "WardMIS B", "WardMIS difference", "WardMI
 NAMES = {"A": A, "B": B, "DIFFERENCE": DIFFERENCE, "PLOT": PLOT}
 
 
-def load(report: Report, a: str, b: str, top: float) -> None:
-    """Makes, or makes anew, the images of configurations `a` and `b` and of their difference. RuntimeError if a file cannot be read."""
+def load(report: Report, a: str, b: str, top: float | None) -> float:
+    """Makes, or makes anew, the images of configurations `a` and `b` and of their difference.
+
+    `top` is the difference that has the brightest colour; None: such a one that the differences are seen. Returns it.
+    RuntimeError if a file cannot be read.
+    """
     try:
         first, second = read_pass(report.image(a)), read_pass(report.image(b))
     except OSError as error:
         raise RuntimeError(f"WardMIS: {error}; compare again") from error
     put(A, first, f"WardMIS A: {a}")
     put(B, second, f"WardMIS B: {b}")
-    put(DIFFERENCE, false_colour(relative_difference(first, second), top), f"{a} against {b}", srgb=True)
+    difference = relative_difference(first, second)
+    if top is None:
+        top = fitting_top(difference)
+    put(DIFFERENCE, false_colour(difference, top), f"{a} against {b}", srgb=True)
+    return top
 
 
 def put(name: str, pixels: np.ndarray, description: str, srgb: bool = False) -> Any:

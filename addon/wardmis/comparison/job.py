@@ -19,6 +19,7 @@ from ..process import STOPPED, Renderer, RendererError
 from .command_line import progress_text
 
 LOOK_SECONDS = 0.25
+CANCELLED = "Cancelled; what is done is kept, and Compare goes on from there"
 SHOWN_IN = {"PROPERTIES", "IMAGE_EDITOR"}
 
 
@@ -92,7 +93,7 @@ class Job:
             self._start_next()
             return
         self.running = False
-        self.text = "Stopped; what is done is kept, and Compare goes on from there" if self.stopping else "Done"
+        self.text = CANCELLED if self.stopping else "Done"
         self._tidy()
         try:
             self._finished(self)
@@ -114,10 +115,11 @@ class Job:
     def cancel(self) -> None:
         """Asks the process to end with what it has; a second time ends it."""
         if self.stopping:
+            self.text = CANCELLED
             self.stop()
             return
         self.stopping = True
-        self.text = "Stopping"
+        self.text = "Cancelling"
         if self._process is not None:
             self._process.interrupt()
 

@@ -22,7 +22,7 @@ from ..operators import export_command
 from ..preferences import renderer_path
 from ..process import RendererError
 from ..properties import ALLOCATIONS
-from . import child, images, job, plot, properties
+from . import child, editors, images, job, plot, properties
 from .converge import OWN, Outcome, Study, arguments, explain_half
 from .cycles import require_cycles
 from .estimate import Estimate, Speeds, estimate
@@ -200,19 +200,7 @@ def show(folder: Path) -> None:
     if plot.available() and curves:
         drawn = plot.draw(curves, str(report.data.get("title", "")), report.metric, report.clock)
         images.put(images.PLOT, drawn, "error against time", srgb=True)
-    _put_into_editors(properties.results().view)
-
-
-def _put_into_editors(view: str) -> None:
-    """Into those that show one of ours, else into the one under the pointer."""
-    image = bpy.data.images.get(images.NAMES[view])
-    spaces = images.image_editors()
-    showing = [space for space in spaces if space.image is not None and images.ours(space.image)]
-    here = getattr(bpy.context, "space_data", None)
-    if not showing and here in spaces:
-        showing = [here]
-    for space in showing or spaces[:1]:
-        space.image = image
+    editors.show(bpy.data.images[images.NAMES[properties.results().view]])
 
 
 class WARDMIS_OT_compare(bpy.types.Operator):
@@ -306,7 +294,7 @@ class WARDMIS_OT_compare_view(bpy.types.Operator):
         if images.NAMES[view] not in bpy.data.images:
             self.report({"WARNING"}, "WardMIS: there is no plot; Blender draws it in a window alone. The report has it")
             return {"CANCELLED"}
-        _put_into_editors(view)
+        editors.show(bpy.data.images[images.NAMES[view]])
         return {"FINISHED"}
 
 
@@ -385,6 +373,15 @@ _CLASSES = (
     WARDMIS_OT_compare_report,
 )
 _keys: list[tuple[Any, Any]] = []
+
+
+def key_text() -> str:
+    """What turns the images over, as the user has it now; empty: no key does."""
+    for _keymap, item in _keys:
+        user = bpy.context.window_manager.keyconfigs.user.keymaps["Image Generic"].keymap_items
+        now = next((i for i in user if i.idname == item.idname and i.active), None)
+        return now.to_string() if now is not None else ""
+    return ""
 
 
 def register() -> None:

@@ -99,10 +99,14 @@ def draw_results(layout: Any) -> None:
     column = layout.column(align=True)
     column.prop(chosen, "a")
     column.prop(chosen, "b")
-    column.prop(chosen, "top")
+    scale = column.row(align=True)
+    scale.prop(chosen, "top")
+    scale.prop(chosen, "fit", toggle=True)
     row = layout.row(align=True)
     for name, label in (("A", "A"), ("B", "B"), ("DIFFERENCE", "Diff")):
         row.operator(view, text=label, depress=chosen.view == name).view = name
+    if operators.key_text():
+        draw_text(layout, f"{operators.key_text()} over the image: the next of the three")
     if chosen.failure:
         draw_text(layout, chosen.failure, "ERROR")
     _draw_table(layout.box(), report)

@@ -6,7 +6,6 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import blf  # type: ignore[import-not-found]
 import bpy
@@ -18,7 +17,8 @@ from .. import compat
 from .report import Curve
 
 WIDTH, HEIGHT = 1200, 800
-LEFT, RIGHT, BOTTOM, TOP = 110, 230, 90, 60  # margins
+LEFT, BOTTOM, TOP = 150, 110, 70  # margins; on the right is what the names need
+WIDEST_NAMES = 480
 BACKGROUND = (1.0, 1.0, 1.0, 1.0)
 INK, GRID = (0.1, 0.1, 0.1, 1.0), (0.88, 0.88, 0.88, 1.0)
 # Okabe and Ito's colours, which the colour-blind can tell apart, without the yellow
@@ -34,7 +34,8 @@ COLOURS = (
     (0.55, 0.35, 0.20),
     (0.50, 0.50, 0.50),
 )
-TEXT_SIZE, FONT = 20, 0
+TEXT_SIZE, FONT = 26, 0
+NAMES_AT = 46  # right of the curves
 
 
 def available() -> bool:
@@ -63,7 +64,8 @@ def draw(curves: Sequence[Curve], title: str, metric: str, clock: str) -> np.nda
 class _Plot:
     def __init__(self, curves: Sequence[Curve], title: str, metric: str, clock: str) -> None:
         self.curves, self.title, self.metric, self.clock = curves, title, metric, clock
-        self.x = _Axis([s for c in curves for s in c.seconds], LEFT, WIDTH - RIGHT)
+        self.right = WIDTH - min(NAMES_AT + 20 + max(_width(c.name) for c in curves), WIDEST_NAMES)
+        self.x = _Axis([s for c in curves for s in c.seconds], LEFT, self.right)
         self.y = _Axis([e for c in curves for e in [*c.low, *c.high]], BOTTOM, HEIGHT - TOP)
         self.shader = compat.uniform_colour_shader()
 
@@ -80,23 +82,24 @@ class _Plot:
             self._line(line, (*colour, 1.0))
             for x, y in line:
                 self._square(x, y, 4, (*colour, 1.0))
-            y = HEIGHT - TOP - 20 - 32 * i
-            self._square(WIDTH - RIGHT + 24, y + 7, 8, (*colour, 1.0))
-            _text(curve.name, WIDTH - RIGHT + 42, y)
+            y = HEIGHT - TOP - 24 - 40 * i
+            self._square(self.right + 26, y + 9, 9, (*colour, 1.0))
+            _text(curve.name, self.right + NAMES_AT, y)
 
     def _frame(self) -> None:
         for value, label in self.x.ticks():
             x = self.x.place(value)
             self._shape("LINES", [(x, BOTTOM), (x, HEIGHT - TOP)], GRID)
-            _text(label, x, BOTTOM - 30, "CENTRE")
+            _text(label, x, BOTTOM - 36, "CENTRE")
         for value, label in self.y.ticks():
             y = self.y.place(value)
-            self._shape("LINES", [(LEFT, y), (WIDTH - RIGHT, y)], GRID)
-            _text(label, LEFT - 12, y - 7, "RIGHT")
-        corners = [(LEFT, BOTTOM), (WIDTH - RIGHT, BOTTOM), (WIDTH - RIGHT, HEIGHT - TOP), (LEFT, HEIGHT - TOP)]
+            self._shape("LINES", [(LEFT, y), (self.right, y)], GRID)
+            _text(label, LEFT - 12, y - 9, "RIGHT")
+        corners = [(LEFT, BOTTOM), (self.right, BOTTOM), (self.right, HEIGHT - TOP), (LEFT, HEIGHT - TOP)]
         self._shape("LINE_STRIP", [*corners, corners[0]], INK)
-        _text("CPU seconds" if self.clock == "cpu" else "seconds", (LEFT + WIDTH - RIGHT) / 2, 20, "CENTRE")
-        _text(f"{self.title}: {self.metric} against time, bands of 95 %", LEFT, HEIGHT - 38)
+        _text("CPU seconds" if self.clock == "cpu" else "seconds", (LEFT + self.right) / 2, 24, "CENTRE")
+        _text(self.metric, 36, (BOTTOM + HEIGHT - TOP) / 2, "CENTRE", upright=True)
+        _text(f"{self.title}: error against time, bands of 95 %", LEFT, HEIGHT - 44)
 
     def _shape(self, kind: str, points: Sequence[tuple[float, float]], colour: Sequence[float]) -> None:
         batch = batch_for_shader(self.shader, kind, {"pos": [(x, y, 0.0) for x, y in points]})
@@ -137,9 +140,18 @@ class _Axis:
         return [(v, f"{v:g}") for v in values if self.low <= math.log10(v) <= self.high]
 
 
-def _text(text: str, x: float, y: float, align: str = "LEFT") -> None:
+def _width(text: str) -> float:
     compat.text_size(FONT, TEXT_SIZE)
-    width: Any = blf.dimensions(FONT, text)[0]
+    return float(blf.dimensions(FONT, text)[0])
+
+
+def _text(text: str, x: float, y: float, align: str = "LEFT", upright: bool = False) -> None:
+    """`upright`: from below to above, (x, y) is where its line is aligned."""
+    before = {"LEFT": 0.0, "CENTRE": 0.5, "RIGHT": 1.0}[align] * _width(text)
     blf.color(FONT, *INK)
-    blf.position(FONT, x - {"LEFT": 0.0, "CENTRE": 0.5, "RIGHT": 1.0}[align] * width, y, 0)
+    blf.position(FONT, *((x, y - before) if upright else (x - before, y)), 0)
+    if upright:
+        blf.enable(FONT, blf.ROTATION)
+        blf.rotation(FONT, math.pi / 2)
     blf.draw(FONT, text)
+    blf.disable(FONT, blf.ROTATION)

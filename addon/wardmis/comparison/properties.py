@@ -14,6 +14,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, Po
 
 from ..properties import ALLOCATIONS
 from . import images
+from .colours import SMALLEST_TOP
 from .converge import DEFAULT_CONFIGURATIONS
 from .report import Report
 
@@ -128,16 +129,30 @@ def _changed(self: Any, _context: Any) -> None:
         self.failure = str(error)
 
 
+def _scaled(self: Any, context: Any) -> None:
+    """The user chose the scale."""
+    if not _choosing and self.fit:
+        self.fit = False  # which makes the images anew
+    else:
+        _changed(self, context)
+
+
 class WARDMIS_PG_results(bpy.types.PropertyGroup):
     a: EnumProperty(name="A", description="The image WardMIS A", items=_image_items, update=_changed)
     b: EnumProperty(name="B", description="The image WardMIS B", items=_image_items, update=_changed)
     top: FloatProperty(
         name="Scale",
-        description="The relative difference that has the brightest colour",
+        description="The relative difference of a pixel that has the brightest colour: 0.1 is a tenth of its brightness in B",
         default=0.5,
-        min=1e-4,
+        min=SMALLEST_TOP,
         soft_max=10.0,
-        precision=3,
+        precision=4,
+        update=_scaled,
+    )
+    fit: BoolProperty(
+        name="Fit",
+        description="Choose the scale for each pair of images so that their differences are seen. Off: keep it, to compare pairs",
+        default=True,
         update=_changed,
     )
     view: EnumProperty(name="View", description="The image that the Image Editor shows", items=VIEWS, default="A")
@@ -163,7 +178,7 @@ def show_report(folder: Path) -> Report:
     _report, _items = new, [(name, name, "") for name in names]
     chosen = results()
     _choosing = True  # each of the two would load both images
-    chosen.a, chosen.b, chosen.failure = names[0], names[-1], ""
+    chosen.a, chosen.b, chosen.failure, chosen.fit = names[0], names[-1], "", True
     _choosing = False
     reload_images()
     return new
@@ -176,9 +191,13 @@ def forget_report() -> None:
 
 
 def reload_images() -> None:
+    global _choosing
     chosen = results()
     if _report is not None and chosen.a and chosen.b:
-        images.load(_report, chosen.a, chosen.b, chosen.top)
+        top = images.load(_report, chosen.a, chosen.b, None if chosen.fit else chosen.top)
+        _choosing = True
+        chosen.top = top
+        _choosing = False
 
 
 @bpy.app.handlers.persistent
