@@ -185,6 +185,11 @@ def uses_nodes(owner: Any) -> bool:
 
 # --- nodes ----------------------------------------------------------------------------------------------------------
 
+# Cycles is given trees without groups, reroutes and muted nodes, which convert nothing any more.
+NODE_TREES_ARE_INLINED = VERSION >= (5, 0, 0)
+# Cycles takes the word of an image's Alpha Mode that a file's colours are multiplied by alpha; before it did so itself.
+PREMULTIPLIED_FILES_ARE_TRUSTED = VERSION >= (5, 0, 0)
+
 
 def add_group_socket(tree: Any, name: str, kind: str, in_out: str) -> Any:
     """A new 'INPUT' or 'OUTPUT' of a node group, of the type `kind` ("NodeSocketColor" ...)."""

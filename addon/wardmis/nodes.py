@@ -11,7 +11,7 @@ from __future__ import annotations
 import bpy
 
 from . import compat
-from .export.material import SHADERS
+from .export.shader import SHADERS
 
 # a leading dot keeps the tree out of the menus of node groups
 TREE_NAME = ".Ward BSDF"

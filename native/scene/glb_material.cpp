@@ -18,6 +18,10 @@ constexpr std::pair<std::string_view, WardVariant> kVariants[] = {
     {"ward", WardVariant::kWard}, {"ward-dur", WardVariant::kWardDur}, {"ward-gmd", WardVariant::kWardGmd}};
 constexpr std::pair<std::string_view, ColorSpace> kColorSpaces[] = {{"sRGB", ColorSpace::kSrgb},
                                                                     {"linear", ColorSpace::kLinear}};
+constexpr std::pair<std::string_view, Filter> kFilters[] = {
+    {"linear", Filter::kLinear}, {"nearest", Filter::kNearest}, {"cubic", Filter::kCubic}};
+constexpr std::pair<std::string_view, Wrap> kExtensionWraps[] = {
+    {"repeat", Wrap::kRepeat}, {"clamp", Wrap::kClamp}, {"mirror", Wrap::kMirror}, {"clip", Wrap::kClip}};
 
 // What docs/scene-format.md makes of a base colour b and a metallic m.
 struct CoreColors {
@@ -143,7 +147,7 @@ Material Materials::core(const Json& json) {
   if (baseTexture && roughnessTexture) {
     const Texture &a = read_.textures[baseTexture->texture], &b = read_.textures[roughnessTexture->texture];
     if (!std::equal(baseTexture->transform, baseTexture->transform + 6, roughnessTexture->transform) ||
-        a.wrapU != b.wrapU || a.wrapV != b.wrapV || a.nearest != b.nearest) {
+        a.wrapU != b.wrapU || a.wrapV != b.wrapV || a.filter != b.filter) {
       leftOut_.add("metallicRoughnessTexture of " + user_, "it is laid out otherwise than baseColorTexture");
       roughnessTexture.reset();
     }
@@ -217,7 +221,11 @@ int Materials::texture(const Json& index, bool isColor) {
     };
     texture.wrapU = wrap("wrapS");
     texture.wrapV = wrap("wrapT");
-    texture.nearest = sampler.integerOr("magFilter", 9729, 0, UINT32_MAX) == 9728;
+    if (sampler.integerOr("magFilter", 9729, 0, UINT32_MAX) == 9728) texture.filter = Filter::kNearest;
+  }
+  if (const auto extension = json.extension(kExtension)) {
+    if (const auto filter = extension->find("filter")) texture.filter = filter->choice(kFilters);
+    if (const auto wrap = extension->find("wrap")) texture.wrapU = texture.wrapV = wrap->choice(kExtensionWraps);
   }
   texture.image = image(json.at("source"), isColor);
   read_.textures.push_back(texture);
@@ -227,11 +235,14 @@ int Materials::texture(const Json& index, bool isColor) {
 int Materials::image(const Json& index, bool isColor) {
   const size_t i = index.index(images_.size(), "images");
   const Json json = images_[i];
-  ColorSpace space = isColor ? ColorSpace::kAuto : ColorSpace::kLinear;
-  if (const auto extension = json.extension(kExtension))
-    if (const auto given = extension->find("colorSpace")) space = given->choice(kColorSpaces);
-  const auto [entry, isNew] = imageOf_.try_emplace({i, space}, static_cast<int>(pending_.size()));
-  if (isNew) pending_.push_back({json, space, user_});
+  Encoding encoding{isColor ? ColorSpace::kAuto : ColorSpace::kLinear};
+  if (const auto extension = json.extension(kExtension)) {
+    if (const auto given = extension->find("colorSpace")) encoding.space = given->choice(kColorSpaces);
+    encoding.filterEncoded = extension->booleanOr("filterEncoded", false);
+    encoding.alphaMultiplies = extension->booleanOr("alphaMultiplies", false);
+  }
+  const auto [entry, isNew] = imageOf_.try_emplace({i, encoding}, static_cast<int>(pending_.size()));
+  if (isNew) pending_.push_back({json, encoding, user_});
   return entry->second;
 }
 
@@ -249,14 +260,14 @@ DecodedImage Materials::decode(const PendingImage& pending, const Bytes& bytes, 
   const Json& json = pending.json;
   try {
     if (json.stringOr("mimeType", "") != "application/x-wardmis-pixels")
-      return decodeImage(bytes.data, pending.space, budget);
+      return decodeImage(bytes.data, pending.encoding, budget);
     const auto raw = json.extension(kExtension);
     if (!raw) json.fail("raw pixels need the extension WARDMIS_scene with their size");
     constexpr std::pair<std::string_view, bool> kTypes[] = {{"u8", false}, {"f32", true}};
     const auto number = [&](const char* key, int most) { return static_cast<int>(raw->at(key).integer(1, most)); };
     const RawLayout layout{number("width", kLargestImageSide), number("height", kLargestImageSide),
                            number("channels", 4), raw->at("type").choice(kTypes)};
-    return rawImage(bytes.data, layout, pending.space, budget);
+    return rawImage(bytes.data, layout, pending.encoding, budget);
   } catch (const UnreadableImage& e) {
     json.fail(fmt::format("{} (needed by {})", e.what(), pending.neededBy), "export the scene again");
   }
@@ -339,7 +350,7 @@ void Materials::finish(Scene& scene) {
     image.name = pending_[i].json.name();
     if (decoded[i].mended > 0)
       leftOut_.add(fmt::format("{} values of image {}", decoded[i].mended, pending_[i].json.described()),
-                   "negative or not finite; 0 is used");
+                   "not finite; 0 is used");
     if (!decoded[i].damage.empty()) {
       const auto uri = pending_[i].json.find("uri");
       scene.notes.push_back(fmt::format("image {}{} {} (needed by {}); magenta is shown instead",
@@ -387,7 +398,7 @@ void Materials::finish(Scene& scene) {
     if (!materialOf_.contains(i))
       leftOut_.add("material " + materials_[i].described(), "nothing that is rendered uses it");
   for (size_t i = 0; i < images_.size(); i++)
-    if (imageOf_.lower_bound({i, ColorSpace::kAuto}) == imageOf_.lower_bound({i + 1, ColorSpace::kAuto}))
+    if (imageOf_.lower_bound({i, {}}) == imageOf_.lower_bound({i + 1, {}}))
       leftOut_.add("image " + images_[i].described(), "nothing that is rendered uses it");
 }
 

@@ -38,7 +38,7 @@ class Materials {
   };
   struct PendingImage {
     Json json;
-    ColorSpace space;
+    Encoding encoding;
     std::string neededBy;
   };
 
@@ -64,7 +64,7 @@ class Materials {
   std::unordered_map<size_t, int> materialOf_;
   int defaultMaterial_ = -1;
   std::map<std::pair<size_t, bool>, int> textureOf_;  // by index in the file, and whether it is a colour
-  std::map<std::pair<size_t, ColorSpace>, int> imageOf_;
+  std::map<std::pair<size_t, Encoding>, int> imageOf_;
   std::vector<PendingImage> pending_;  // of read_.images
   std::vector<Bake> bakes_;
   int worldTexture_ = -1;

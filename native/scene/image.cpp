@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cfloat>
+#include <cmath>
 #include <cstring>
 
 #include "scene/image_file.h"
@@ -12,20 +13,30 @@
 namespace wardmis {
 namespace {
 
-// Of float images: colours become linear, and what no renderer can use becomes 0.
-DecodedImage finished(Image image, ColorSpace space) {
+// What alpha multiplies, in the space that the numbers are in.
+void multiplyByAlpha(Image& im) {
+  const size_t step = im.channels;
+  for (size_t i = 0; i < im.bytes.size(); i += step)
+    for (size_t c = 0; c + 1 < step; c++)
+      im.bytes[i + c] = static_cast<uint8_t>(im.bytes[i + c] * im.bytes[i + step - 1] / 255);
+  for (size_t i = 0; i < im.floats.size(); i += step)
+    for (size_t c = 0; c + 1 < step; c++) im.floats[i + c] *= im.floats[i + step - 1];
+}
+
+// What no renderer can use becomes 0; colours of float images become linear, unless they are filtered before that.
+DecodedImage finished(Image image, Encoding encoding) {
   DecodedImage out{std::move(image), 0, {}};
   Image& im = out.image;
-  if (im.floats.empty()) {
-    im.srgb = space != ColorSpace::kLinear;
-    return out;
-  }
   for (float& v : im.floats) {
-    const bool right = (v >= 0) & (v <= FLT_MAX);
+    const bool right = std::fabs(v) <= FLT_MAX;
     out.mended += !right;
     v = right ? v : 0;
   }
-  if (space == ColorSpace::kSrgb)
+  if (encoding.alphaMultiplies && im.channels % 2 == 0) multiplyByAlpha(im);
+  const bool srgb = encoding.space != ColorSpace::kLinear;
+  im.filterEncoded = srgb && encoding.filterEncoded;
+  im.srgb = srgb && (im.floats.empty() || im.filterEncoded);
+  if (srgb && !im.filterEncoded)
     for (size_t i = 0; i < im.floats.size(); i++)
       if (!isAlpha(im, static_cast<int>(i % im.channels))) im.floats[i] = srgbToLinear(im.floats[i]);
   return out;
@@ -33,7 +44,7 @@ DecodedImage finished(Image image, ColorSpace space) {
 
 }  // namespace
 
-DecodedImage decodeImage(std::span<const std::byte> file, ColorSpace space, ImageBudget& budget) {
+DecodedImage decodeImage(std::span<const std::byte> file, Encoding encoding, ImageBudget& budget) {
   FileImage read;
   try {
     read = readImageFile(file);
@@ -42,11 +53,11 @@ DecodedImage decodeImage(std::span<const std::byte> file, ColorSpace space, Imag
   }
   if (!budget.take(read.image.bytes.size() + read.image.floats.size() * sizeof(float)))
     throw UnreadableImage("is one of too many images with the same data");
-  if (space == ColorSpace::kAuto) space = read.integers ? ColorSpace::kSrgb : ColorSpace::kLinear;
-  return finished(std::move(read.image), space);
+  if (encoding.space == ColorSpace::kAuto) encoding.space = read.integers ? ColorSpace::kSrgb : ColorSpace::kLinear;
+  return finished(std::move(read.image), encoding);
 }
 
-DecodedImage rawImage(std::span<const std::byte> data, RawLayout layout, ColorSpace space, ImageBudget& budget) {
+DecodedImage rawImage(std::span<const std::byte> data, RawLayout layout, Encoding encoding, ImageBudget& budget) {
   const size_t values = size_t(layout.width) * layout.height * layout.channels;
   const size_t size = values * (layout.floats ? sizeof(float) : 1);
   if (data.size() != size)
@@ -64,8 +75,8 @@ DecodedImage rawImage(std::span<const std::byte> data, RawLayout layout, ColorSp
     image.bytes.resize(values);
     std::memcpy(image.bytes.data(), data.data(), size);
   }
-  if (space == ColorSpace::kAuto) space = layout.floats ? ColorSpace::kLinear : ColorSpace::kSrgb;
-  return finished(std::move(image), space);
+  if (encoding.space == ColorSpace::kAuto) encoding.space = layout.floats ? ColorSpace::kLinear : ColorSpace::kSrgb;
+  return finished(std::move(image), encoding);
 }
 
 }  // namespace wardmis

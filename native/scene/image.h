@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -16,9 +17,17 @@ namespace wardmis {
 // How the numbers of an image stand for light. kAuto: sRGB for integers, linear for floats.
 enum class ColorSpace : uint8_t { kAuto, kSrgb, kLinear };
 
+// How an image's numbers are to be taken.
+struct Encoding {
+  ColorSpace space = ColorSpace::kAuto;
+  bool filterEncoded = false;    // Image::filterEncoded
+  bool alphaMultiplies = false;  // colours are to be multiplied by alpha, as they are in the file
+  auto operator<=>(const Encoding&) const = default;
+};
+
 struct DecodedImage {
   Image image;
-  uint64_t mended = 0;  // values that were not finite, or negative, and were set to 0
+  uint64_t mended = 0;  // values that were not finite, and were set to 0
   std::string damage;  // why it is not what the file should hold but one magenta texel, Blender's sign for a lost image
 };
 
@@ -46,13 +55,13 @@ class ImageBudget {
 };
 
 // An image file, told by its first bytes; see image_file.h. What cannot be read is no reason not to render the rest.
-DecodedImage decodeImage(std::span<const std::byte> file, ColorSpace space, ImageBudget& budget);
+DecodedImage decodeImage(std::span<const std::byte> file, Encoding encoding, ImageBudget& budget);
 
 // Raw pixels of 8 bits or 32-bit floats, rows from the bottom: exactly width * height * channels values.
 struct RawLayout {
   int width, height, channels;
   bool floats;
 };
-DecodedImage rawImage(std::span<const std::byte> data, RawLayout layout, ColorSpace space, ImageBudget& budget);
+DecodedImage rawImage(std::span<const std::byte> data, RawLayout layout, Encoding encoding, ImageBudget& budget);
 
 }  // namespace wardmis

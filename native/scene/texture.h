@@ -31,61 +31,119 @@ inline bool isAlpha(const Image& image, int channel) {
   return image.channels % 2 == 0 && channel == image.channels - 1;
 }
 
-// The image's value at the texel of index `texel` (x + y width).
-inline float texelScalar(const Image& image, size_t texel, int channel) {
-  const size_t i = texel * image.channels + channel;
-  if (image.bytes.empty()) return image.floats[i];
-  return kByteToLinear[image.srgb && !isAlpha(image, channel)][image.bytes[i]];
+// sRGB to linear of any number, after filtering: a look-up in [0, 1], whose nodes hold the 256 codes exactly.
+constexpr int kDecodeSteps = 255 * 16;
+inline const std::array<float, kDecodeSteps + 2> kDecode = [] {
+  std::array<float, kDecodeSteps + 2> table;
+  for (int i = 0; i < kDecodeSteps + 2; i++) table[i] = srgbToLinear(static_cast<float>(i) / kDecodeSteps);
+  return table;
+}();
+inline float decodeFiltered(float v) {
+  if (!((v >= 0) & (v <= 1))) return srgbToLinear(v);
+  const float x = v * kDecodeSteps;
+  const int i = static_cast<int>(x);
+  return kDecode[i] + (x - static_cast<float>(i)) * (kDecode[i + 1] - kDecode[i]);
 }
-inline Rgb texelRgb(const Image& image, size_t texel) {
+
+// The numbers at the texel of index `texel` (x + y width), from 8 bits by `table`.
+inline float storedScalar(const Image& image, size_t texel, int channel, const std::array<float, 256>& table) {
+  const size_t i = texel * image.channels + channel;
+  return image.bytes.empty() ? image.floats[i] : table[image.bytes[i]];
+}
+inline Rgb storedRgb(const Image& image, size_t texel, const std::array<float, 256>& table) {
   const size_t i = texel * image.channels;
   const size_t g = image.channels >= 3 ? 1 : 0, b = 2 * g;  // grey stands for all three
   if (image.bytes.empty()) return {image.floats[i], image.floats[i + g], image.floats[i + b]};
-  const auto& table = kByteToLinear[image.srgb];
   return {table[image.bytes[i]], table[image.bytes[i + g]], table[image.bytes[i + b]]};
 }
 
-// Where a coordinate falls among n texels: the two neighbours and the weight of the second.
-struct TexelPair {
-  int i0, i1;
+// The image's linear value at a texel.
+inline Rgb decodeFiltered(Rgb c) { return {decodeFiltered(c.x), decodeFiltered(c.y), decodeFiltered(c.z)}; }
+inline Rgb texelRgb(const Image& image, size_t texel) {
+  const bool floats = image.bytes.empty();
+  const Rgb c = storedRgb(image, texel, kByteToLinear[image.srgb]);
+  return floats && image.srgb ? decodeFiltered(c) : c;
+}
+
+// Where a coordinate falls among n texels: i, and the share t of the next one.
+struct TexelFall {
+  int i;
   float t;
 };
-inline TexelPair texelPair(float u, int n, Wrap wrap, bool nearest) {
+inline TexelFall texelFall(float u, int n, Wrap wrap, bool nearest) {
   const auto floorOf = [](float v) {  // of |v| < 2^31; std::floor is a call without SSE 4.1
     const int i = static_cast<int>(v);
     return i - (v < static_cast<float>(i));
   };
-  if (wrap != Wrap::kClamp) {
+  if (wrap == Wrap::kRepeat || wrap == Wrap::kMirror) {
     u = std::fabs(u) < 1e9f ? u : 0;  // beyond 2^24 a float has no fraction anyway; NaN ends here
     if (wrap == Wrap::kRepeat)
       u -= static_cast<float>(floorOf(u));
     else
       u = std::fabs(u - 2 * static_cast<float>(floorOf(u * 0.5f + 0.5f)));
   }
-  u = u >= 0 ? std::min(u, 1.0f) : 0;  // NaN: 0
+  const float outside = wrap == Wrap::kClip ? 4 : 0;        // further than any filter reaches: at least 2 texels
+  u = u >= -outside ? std::min(u, 1 + outside) : -outside;  // NaN: as below
   const float x = u * static_cast<float>(n) - (nearest ? 0 : 0.5f);
   const int i = floorOf(x);
-  if (nearest) return {std::min(i, n - 1), std::min(i, n - 1), 0};
-  const float t = x - static_cast<float>(i);
-  if (wrap == Wrap::kRepeat) return {i < 0 ? n - 1 : i, i + 1 < n ? i + 1 : 0, t};
-  return {std::max(i, 0), std::min(i + 1, n - 1), t};
+  // u = 1 is the end of the last texel
+  if (nearest) return {u == 1 ? n - 1 : wrap == Wrap::kClip ? i : std::min(i, n - 1), 0};
+  return {i, x - static_cast<float>(i)};
 }
 
-// Bilinear or nearest look-up of texel(index), u to the right, v up, (0, 0) the bottom left corner.
+// The texel that stands for texel i, which may be up to two beyond the image; -1: none.
+inline int wrappedTexel(int i, int n, Wrap wrap) {
+  if ((i >= 0) & (i < n)) return i;
+  switch (wrap) {
+    case Wrap::kRepeat:
+      return ((i % n) + n) % n;
+    case Wrap::kMirror: {
+      const int m = (i < 0 ? -1 - i : i) % (2 * n);
+      return m < n ? m : 2 * n - 1 - m;
+    }
+    case Wrap::kClip:
+      return -1;
+    default:
+      return std::clamp(i, 0, n - 1);
+  }
+}
+
+// The weights of a cubic B-spline for the texels i - 1 to i + 2.
+inline std::array<float, 4> cubicWeights(float t) {
+  const float s = 1 - t;
+  return {s * s * s / 6, (4 + t * t * (3 * t - 6)) / 6, (4 + s * s * (3 * s - 6)) / 6, t * t * t / 6};
+}
+
+// Filtered look-up of texel(index), u to the right, v up, (0, 0) the bottom left corner.
 template <class F>
 auto lookUp(const Image& image, const Texture& texture, Vec2f uv, F texel) {
-  const TexelPair x = texelPair(uv.x, image.width, texture.wrapU, texture.nearest);
-  const TexelPair y = texelPair(uv.y, image.height, texture.wrapV, texture.nearest);
-  const size_t row0 = size_t(y.i0) * image.width, row1 = size_t(y.i1) * image.width;
-  if (texture.nearest) return texel(row0 + x.i0);
-  return (texel(row0 + x.i0) * (1 - x.t) + texel(row0 + x.i1) * x.t) * (1 - y.t) +
-         (texel(row1 + x.i0) * (1 - x.t) + texel(row1 + x.i1) * x.t) * y.t;
+  const bool nearest = texture.filter == Filter::kNearest;
+  const TexelFall x = texelFall(uv.x, image.width, texture.wrapU, nearest);
+  const TexelFall y = texelFall(uv.y, image.height, texture.wrapV, nearest);
+  const auto column = [&](int i) { return wrappedTexel(i, image.width, texture.wrapU); };
+  const auto row = [&](int i) { return wrappedTexel(i, image.height, texture.wrapV); };
+  const auto at = [&](int i, int j) { return (i | j) < 0 ? decltype(texel(0)){} : texel(size_t(j) * image.width + i); };
+  if (nearest) return at(column(x.i), row(y.i));
+  if (texture.filter == Filter::kLinear) {
+    const int i0 = column(x.i), i1 = column(x.i + 1), j0 = row(y.i), j1 = row(y.i + 1);
+    return (at(i0, j0) * (1 - x.t) + at(i1, j0) * x.t) * (1 - y.t) + (at(i0, j1) * (1 - x.t) + at(i1, j1) * x.t) * y.t;
+  }
+  const std::array<float, 4> wx = cubicWeights(x.t), wy = cubicWeights(y.t);
+  decltype(texel(0)) sum{};
+  for (int j = 0; j < 4; j++)
+    for (int i = 0; i < 4; i++) sum = sum + at(column(x.i + i - 1), row(y.i + j - 1)) * (wx[i] * wy[j]);
+  return sum;
 }
 inline Rgb lookUpRgb(const Image& image, const Texture& texture, Vec2f uv) {
-  return lookUp(image, texture, uv, [&](size_t i) { return texelRgb(image, i); });
+  const auto& table = kByteToLinear[image.srgb && !image.filterEncoded];
+  const Rgb c = lookUp(image, texture, uv, [&](size_t i) { return storedRgb(image, i, table); });
+  return image.filterEncoded ? decodeFiltered(c) : c;
 }
 inline float lookUpScalar(const Image& image, const Texture& texture, Vec2f uv, int channel) {
-  return lookUp(image, texture, uv, [&](size_t i) { return texelScalar(image, i, channel); });
+  const bool encoded = image.filterEncoded && !isAlpha(image, channel);
+  const auto& table = kByteToLinear[image.srgb && !encoded && !isAlpha(image, channel)];
+  const float v = lookUp(image, texture, uv, [&](size_t i) { return storedScalar(image, i, channel, table); });
+  return encoded ? decodeFiltered(v) : v;
 }
 
 inline Vec2f transformed(const TextureUse& use, Vec2f uv) {
@@ -93,11 +151,12 @@ inline Vec2f transformed(const TextureUse& use, Vec2f uv) {
   return {m[0] * uv.x + m[1] * uv.y + m[2], m[3] * uv.x + m[4] * uv.y + m[5]};
 }
 
-// What a texture contributes at the surface's uv; 1 if there is none.
+// What a texture contributes at the surface's uv; 1 if there is none. Texels may be negative, for filtering.
 inline Rgb sampleRgb(const Scene& scene, const TextureUse& use, Vec2f uv) {
   if (use.texture < 0) return {1, 1, 1};
   const Texture& texture = scene.textures[use.texture];
-  return lookUpRgb(scene.images[texture.image], texture, transformed(use, uv));
+  const Rgb c = lookUpRgb(scene.images[texture.image], texture, transformed(use, uv));
+  return {std::max(c.x, 0.0f), std::max(c.y, 0.0f), std::max(c.z, 0.0f)};
 }
 inline float sampleScalar(const Scene& scene, const TextureUse& use, Vec2f uv) {
   if (use.texture < 0) return 1;

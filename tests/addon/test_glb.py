@@ -235,10 +235,10 @@ class Content(GlbTest):
             ColorInput((3, 3, 0)),
         )
         images = [
-            ImageData("photo", encoded=b"PNG..", mime_type="image/png"),
+            ImageData("photo", encoded=b"PNG..", mime_type="image/png", filter_encoded=True, alpha_multiplies=True),
             ImageData("data", "linear", pixels=np.zeros((2, 3, 4), np.float32)),
         ]
-        textures = [TextureData(0), TextureData(1, "mirror", nearest=True)]
+        textures = [TextureData(0), TextureData(1, "mirror", "nearest"), TextureData(0, "clip", "cubic")]
         document, _ = self.write(scene(materials=[material], images=images, textures=textures))
         written = document["materials"][0]["extensions"]["WARDMIS_scene"]
         self.assertEqual(written["variant"], "ward-dur")
@@ -253,6 +253,12 @@ class Content(GlbTest):
         )
         self.assertEqual(document["materials"][0]["emissiveFactor"], [1, 1, 0])
         self.assertEqual(document["images"][1]["mimeType"], "application/x-wardmis-pixels")
+        self.assertEqual(
+            document["images"][0]["extensions"]["WARDMIS_scene"],
+            {"colorSpace": "sRGB", "filterEncoded": True, "alphaMultiplies": True},
+        )
+        self.assertEqual(document["textures"][2]["extensions"]["WARDMIS_scene"], {"filter": "cubic", "wrap": "clip"})
+        self.assertNotIn("extensions", document["textures"][1])
         expected = {"colorSpace": "linear", "width": 3, "height": 2, "channels": 4, "type": "f32"}
         self.assertEqual(document["images"][1]["extensions"]["WARDMIS_scene"], expected)
         self.assertEqual(

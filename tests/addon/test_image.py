@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 from wardmis.export.context import ExportContext
-from wardmis.export.image import deviations, export_image, missing, texels
+from wardmis.export.image import Picture, export_image, frame_of, path_of_frame, picture_of
 from wardmis.export.world import export_world
 
 LINEAR = "Linear" if bpy.app.version < (4, 0, 0) else "Linear Rec.709"
@@ -49,15 +49,15 @@ class Images(unittest.TestCase):
         for file_format, is_float, mime_type in cases:
             with self.subTest(file_format):
                 image, content = self.file(file_format, is_float)
-                data = export_image(image)
+                data = export_image(Picture(image))
                 self.assertEqual((data.mime_type, data.encoded == content), (mime_type, True))
                 self.assertIsNone(data.pixels)
                 self.assertEqual(data.color_space, "linear" if is_float else "sRGB")
-                self.assertIsNone(missing(image))
+                self.assertIsNone(Picture(image).missing())
 
     def test_other_files_become_pixels(self):
         image, _ = self.file("TIFF")
-        data = export_image(image)
+        data = export_image(Picture(image))
         self.assertIsNone(data.encoded)
         self.assertEqual((data.pixels.dtype, data.pixels.shape[:2], data.color_space), (np.uint8, (1, 2), "sRGB"))
         self.assertEqual(data.pixels[0, 0, :3].tolist(), [51, 102, 153])
@@ -67,15 +67,15 @@ class Images(unittest.TestCase):
             file.write(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\x40\x80\xc0\x82\x40\x80\xc0\x80")
         image = bpy.data.images.load(path)
         self.addCleanup(lambda: bpy.data.images.remove(image))
-        data = export_image(image)
+        data = export_image(Picture(image))
         self.assertIsNone(data.encoded)
         self.assertEqual((data.pixels.dtype, data.color_space), (np.float32, "linear"))
         np.testing.assert_allclose(data.pixels[0, :, :3], [(1, 2, 3), (0.25, 0.5, 0.75)], rtol=0.01)
 
     def test_generated_images_become_pixels(self):
-        data = export_image(self.generated(is_float=False))
+        data = export_image(Picture(self.generated(is_float=False)))
         self.assertEqual(data.pixels.tolist(), [[[51, 102, 153, 255], [0, 255, 204, 128]]])
-        data = export_image(self.generated(is_float=True, color_space=LINEAR))
+        data = export_image(Picture(self.generated(is_float=True, color_space=LINEAR)))
         self.assertEqual(data.color_space, "linear")
         np.testing.assert_allclose(data.pixels[0, 0], (0.2, 0.4, 0.6, 1.0), rtol=1e-6)
 
@@ -83,13 +83,13 @@ class Images(unittest.TestCase):
         image, content = self.file("PNG")
         image.pack()
         os.remove(os.path.join(self.folder.name, "image"))
-        self.assertIsNone(missing(image))
-        self.assertEqual(export_image(image).encoded, content)
+        self.assertIsNone(Picture(image).missing())
+        self.assertEqual(export_image(Picture(image)).encoded, content)
 
     def test_painted_image_is_not_its_file_any_more(self):
         image, content = self.file("PNG")
         image.pixels[0] = 1.0
-        data = export_image(image)
+        data = export_image(Picture(image))
         self.assertIsNone(data.encoded)
         self.assertEqual(data.pixels[0, 0, 0], 255)
         with open(os.path.join(self.folder.name, "image"), "rb") as file:
@@ -100,13 +100,13 @@ class Images(unittest.TestCase):
         image, _ = self.file("PNG")
         path = os.path.join(self.folder.name, "image")
         os.remove(path)
-        self.assertIn(path, missing(image))
-        np.testing.assert_array_equal(export_image(image).pixels, [[[1, 0, 1]]])
+        self.assertIn(path, Picture(image).missing())
+        np.testing.assert_array_equal(export_image(Picture(image)).pixels, [[[1, 0, 1]]])
 
     def test_folder_is_named_as_one(self):
         image = self.generated(is_float=False)
         image.source, image.filepath = "FILE", self.folder.name
-        self.assertIn(f"its file '{self.folder.name}' is a folder", missing(image))
+        self.assertIn(f"its file '{self.folder.name}' is a folder", Picture(image).missing())
 
     def test_damaged_file_is_named_and_magenta(self):
         for file_format in ("PNG", "JPEG", "OPEN_EXR"):
@@ -116,44 +116,89 @@ class Images(unittest.TestCase):
                 with open(path, "wb") as file:
                     file.write(content[:20])
                 image = bpy.data.images.load(path)
-                self.assertIn(f"cannot be read from '{path}'", missing(image))
-                np.testing.assert_array_equal(export_image(image).pixels, [[[1, 0, 1]]])
-                np.testing.assert_array_equal(texels(image), [[[1, 0, 1, 1]]])
+                self.assertIn(f"cannot be read from '{path}'", Picture(image).missing())
+                np.testing.assert_array_equal(export_image(Picture(image)).pixels, [[[1, 0, 1]]])
+                np.testing.assert_array_equal(Picture(image).texels(), [[[1, 0, 1, 1]]])
                 bpy.data.images.remove(image)
 
     def test_non_color_is_linear_and_others_are_noted(self):
         image, _ = self.file("PNG")
         image.colorspace_settings.name = "Non-Color"
-        self.assertEqual(export_image(image).color_space, "linear")
-        self.assertEqual(deviations(image), [])
+        self.assertEqual(export_image(Picture(image)).color_space, "linear")
+        self.assertEqual(Picture(image).deviations(), [])
         image.colorspace_settings.name = "Filmic sRGB" if bpy.app.version < (4, 0, 0) else "AgX Base sRGB"
-        self.assertIn("is not supported", deviations(image)[0])
-        self.assertEqual(export_image(image).color_space, "sRGB")
+        self.assertIn("is not supported", Picture(image).deviations()[0])
+        self.assertEqual(export_image(Picture(image)).color_space, "sRGB")
 
     def test_texels_are_linear_rgba(self):
         image = self.generated(is_float=False)
         linear = ((0.4 + 0.055) / 1.055) ** 2.4
-        np.testing.assert_allclose(texels(image)[0, 0, (1, 3)], (linear, 1.0), rtol=1e-5)
-        self.assertAlmostEqual(float(texels(image)[0, 1, 3]), 128 / 255, places=6)  # alpha is not a colour
+        np.testing.assert_allclose(Picture(image).texels()[0, 0, (1, 3)], (linear, 1.0), rtol=1e-5)
+        self.assertAlmostEqual(float(Picture(image).texels()[0, 1, 3]), 128 / 255, places=6)  # alpha is not a colour
 
     def test_moving_and_tiled_images_are_noted(self):
         image = self.generated(is_float=False)
-        image.source = "SEQUENCE"
-        self.assertIn("sequences", deviations(image)[0])
+        image.source = "MOVIE"
+        self.assertIn("movies", Picture(image).deviations()[0])
         tiled = bpy.data.images.new("Tiled", 2, 2, tiled=True)
         self.addCleanup(lambda: bpy.data.images.remove(tiled))
         tiled.tiles.new(1002)
-        self.assertIn("1001", deviations(tiled)[0])
+        self.assertIn("1001", Picture(tiled).deviations()[0])
 
     def test_render_result_cannot_be_a_texture(self):
         viewer = SimpleNamespace(
             name="Render Result", type="RENDER_RESULT", source="VIEWER"
         )  # Blender makes them by rendering alone
-        self.assertIn("result", missing(viewer))
+        self.assertIn("result", Picture(viewer).missing())
+
+    def test_picture_of_a_sequence_as_blender_counts(self):
+        for (start, offset, length, cyclic), expected in (
+            ((1, 0, 5, False), 3),
+            ((1, 2, 3, False), 5),
+            ((1, 0, 2, False), 2),  # the last one stays
+            ((2, 0, 3, True), 2),
+            ((-7, 0, 3, True), 2),
+            ((3, 0, 3, True), 1),
+            ((4, 0, 3, True), 3),
+            ((5, 0, 9, False), 0),  # the first one has not come yet
+        ):
+            user = SimpleNamespace(frame_start=start, frame_offset=offset, frame_duration=length, use_cyclic=cyclic)
+            self.assertEqual(frame_of(user, 3), expected, (start, offset, length, cyclic))
+        self.assertEqual(path_of_frame("/a/b1/shot_007_v.png", 12), "/a/b1/shot_012_v.png")
+        self.assertEqual(path_of_frame("/a/b1/shot.png", 12), "/a/b1/shot.png")
+
+    def test_sequence_is_the_file_of_its_frame(self):
+        image, content = self.file("PNG")
+        path = os.path.join(self.folder.name, "frame_03.png")
+        os.rename(os.path.join(self.folder.name, "image"), path)
+        image.filepath = path.replace("03", "01")
+        image.source = "SEQUENCE"
+        self.assertEqual(export_image(Picture(image, frame=3)).encoded, content)
+        self.assertIn("frame_04.png' is missing", Picture(image, frame=4).missing())
+
+    def test_alpha_as_cycles_takes_it(self):
+        image, _ = self.file("PNG")
+        user = SimpleNamespace(frame_start=1, frame_offset=0, frame_duration=1, use_cyclic=False)
+        for mode, color_space, alphas in (
+            ("STRAIGHT", "sRGB", ("multiplied", "kept")),
+            ("CHANNEL_PACKED", "sRGB", ("kept", "kept")),
+            ("NONE", "sRGB", ("kept", "kept")),
+            ("STRAIGHT", "Non-Color", ("kept", "kept")),
+        ):
+            image.alpha_mode, image.colorspace_settings.name = mode, color_space
+            found = tuple(picture_of(image, shows_alpha, user, 1).alpha for shows_alpha in (False, True))
+            self.assertEqual(found, alphas, (mode, color_space))
+        image.alpha_mode, image.colorspace_settings.name = "STRAIGHT", "sRGB"
+        multiplied = Picture(image, "multiplied")
+        self.assertTrue(multiplied.export().alpha_multiplies)
+        stored = np.array([0, 255, 204]) * 128 // 255 / 255  # as they are in the file
+        np.testing.assert_allclose(
+            multiplied.texels()[0, 1, :3], [((s + 0.055) / 1.055) ** 2.4 if s else 0 for s in stored], rtol=1e-5
+        )
 
 
 class World(unittest.TestCase):
-    def test_missing_image_of_the_sky_is_named_and_magenta(self):
+    def test_missing_image_of_the_sky_is_named_and_grey(self):
         world = bpy.data.worlds.new("W")
         self.addCleanup(lambda: bpy.data.worlds.remove(world))
         world.use_nodes = True
@@ -163,5 +208,5 @@ class World(unittest.TestCase):
         self.addCleanup(lambda: bpy.data.images.remove(bpy.data.images["Sky"]))
         node.image.source, node.image.filepath = "FILE", "/nowhere/sky.exr"
         context = ExportContext(export_image)
-        self.assertEqual(export_world(world, context).radiance, (1, 0, 1))
+        self.assertEqual(export_world(world, context).radiance, (0.5, 0.5, 0.5))
         self.assertIn("/nowhere/sky.exr", context.notes[0])

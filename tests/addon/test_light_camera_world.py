@@ -126,9 +126,33 @@ class Lights(SceneTest):
         self.assertEqual(self.only().color, (2, 4, 4))
         texture = data.node_tree.nodes.new("ShaderNodeTexChecker")
         data.node_tree.links.new(texture.outputs["Color"], emission.inputs["Color"])
+        texture.inputs["Color1"].default_value, texture.inputs["Color2"].default_value = (0.8, 0, 0, 1), (0.2, 0, 1, 1)
         scene = self.gather()
-        self.assertEqual(scene.lights[0].color, (4, 0, 4))
+        np.testing.assert_allclose(scene.lights[0].color, (2, 0, 2), rtol=1e-6)
         self.assertIn("light 'Light': node 'Checker Texture'", scene.notes[0])
+
+    def test_nodes_of_a_light_as_cycles_sees_them(self):
+        data = self.light("POINT").data
+        data.use_nodes = True
+        tree = data.node_tree
+        emission = next(n for n in tree.nodes if n.bl_idname == "ShaderNodeEmission")
+        falloff = tree.nodes.new("ShaderNodeLightFalloff")
+        falloff.inputs["Strength"].default_value = 7
+        tree.links.new(falloff.outputs["Quadratic"], emission.inputs["Strength"])
+        self.assertEqual(self.only().color, (7, 7, 7))
+        self.assertEqual(self.gather().notes, [])
+        tree.links.new(falloff.outputs["Linear"], emission.inputs["Strength"])
+        self.assertEqual(self.only().color, (7, 7, 7))
+        self.assertIn("node 'Light Falloff' (Light Falloff) is not supported", self.gather().notes[0])
+        emission.mute = True
+        scene = self.gather()
+        self.assertEqual(scene.lights, [])
+        body = tree.nodes.new("ShaderNodeBlackbody")
+        body.inputs[0].default_value = 3000
+        tree.links.new(body.outputs[0], tree.get_output_node("ALL").inputs["Surface"])  # a colour shines
+        red, green, blue = self.only().color
+        self.assertGreater(red, green)
+        self.assertGreater(green, blue)
 
     def test_lights_that_give_no_light_are_left_out(self):
         self.light("POINT").data.energy = 0
@@ -270,8 +294,10 @@ class World(SceneTest):
     def test_background_that_is_not_finite(self):
         self.background.inputs["Strength"].default_value = math.nan
         scene = self.gather()
-        self.assertEqual(scene.world.radiance, (1, 0, 1))
-        self.assertIn("world 'World': its radiance is not a finite number", scene.notes[0])
+        self.assertEqual(scene.world.radiance, (0, 0, 0))
+        self.assertIn(
+            "world 'World': node 'Background' (Background) has a 'Strength' that is not a finite number", scene.notes[0]
+        )
 
     def test_negative_background_is_noted(self):
         self.background.inputs["Strength"].default_value = -1
@@ -326,8 +352,8 @@ class World(SceneTest):
     def test_what_is_not_understood_is_noted(self):
         self.environment("POINT", scale=(1, 2, 1)).projection = "MIRROR_BALL"
         notes = "\n".join(self.gather().notes)
-        self.assertIn("the projection Mirror_Ball is not supported", notes)
-        self.assertIn("only the rotation of node 'Mapping' is used", notes)
+        self.assertIn("has the projection Mirror_Ball, which is not supported", notes)
+        self.assertIn("node 'Mapping' (Mapping) moves or stretches the sky; only its rotation is used", notes)
 
     def test_volume_and_ray_visibility_are_noted(self):
         volume = self.tree.nodes.new("ShaderNodeVolumeScatter")
@@ -337,13 +363,59 @@ class World(SceneTest):
         self.assertIn("world 'World': volumes are not supported", notes)
         self.assertIn("world 'World': its ray visibility is not supported", notes)
 
-    def test_missing_image_and_unknown_color_are_magenta(self):
+    def test_missing_image_is_grey_and_a_sky_its_mean(self):
         self.environment(None).image = None
         scene = self.gather()
-        self.assertEqual(scene.world.radiance, (2, 0, 2))
-        self.assertIn("world 'World': node 'Environment Texture' has no image", scene.notes[0])
+        self.assertEqual(scene.world.radiance, (1, 1, 1))
+        self.assertIn("world 'World': node 'Environment Texture' (Environment Texture) has no image", scene.notes[0])
         sky = self.tree.nodes.new("ShaderNodeTexSky")
         self.tree.links.new(sky.outputs["Color"], self.background.inputs["Color"])
         scene = self.gather()
-        self.assertEqual(scene.world.radiance, (2, 0, 2))
+        self.assertTrue(all(scene.world.radiance))
         self.assertIn("node 'Sky Texture'", scene.notes[0])
+
+    def test_worlds_of_other_nodes(self):
+        output = self.tree.get_output_node("ALL").inputs["Surface"]
+        rgb, value = self.tree.nodes.new("ShaderNodeRGB"), self.tree.nodes.new("ShaderNodeValue")
+        rgb.outputs[0].default_value, value.outputs[0].default_value = (0.1, 0.2, 0.3, 1), 3
+        emission = self.tree.nodes.new("ShaderNodeEmission")
+        emission.inputs["Color"].default_value, emission.inputs["Strength"].default_value = (0.5, 0.25, 1, 1), 2
+        mix = self.tree.nodes.new("ShaderNodeMixShader")
+        mix.inputs[0].default_value = 0.25
+        self.tree.links.new(emission.outputs[0], mix.inputs[1])
+        self.tree.links.new(self.background.outputs[0], mix.inputs[2])
+        diffuse = self.tree.nodes.new("ShaderNodeBsdfDiffuse")
+        group = bpy.data.node_groups.new("G", "ShaderNodeTree")
+        compat.add_group_socket(group, "Shader", "NodeSocketShader", "OUTPUT")
+        inner, end = group.nodes.new("ShaderNodeBackground"), group.nodes.new("NodeGroupOutput")
+        inner.inputs["Color"].default_value, inner.inputs["Strength"].default_value = (1, 0.5, 0.25, 1), 4
+        group.links.new(inner.outputs[0], end.inputs[0])
+        grouped = self.tree.nodes.new("ShaderNodeGroup")
+        grouped.node_tree = group
+        for node, expected in (
+            (rgb, (0.1, 0.2, 0.3)),
+            (value, (3, 3, 3)),
+            (emission, (1, 0.5, 2)),
+            (mix, (0.75 + 0.05, 0.375 + 0.1, 1.5 + 0.2)),
+            (diffuse, (0, 0, 0)),  # in a world nothing is lit
+            (grouped, (4, 2, 1)),
+        ):
+            with self.subTest(node.bl_idname):
+                self.tree.links.new(node.outputs[0], output)
+                scene = self.gather()
+                np.testing.assert_allclose(scene.world.radiance, expected, rtol=1e-6)
+                self.assertEqual(scene.notes, [])
+        grouped.mute = True
+        self.assertEqual(self.gather().world.radiance, (0, 0, 0))
+
+    def test_sky_behind_nodes_is_baked(self):
+        texture = self.environment(None)
+        texture.image.pixels.foreach_set(np.full(8 * 4 * 4, 0.5, np.float32))
+        gamma = self.tree.nodes.new("ShaderNodeGamma")
+        gamma.inputs["Gamma"].default_value = 2
+        self.tree.links.new(texture.outputs["Color"], gamma.inputs["Color"])
+        self.tree.links.new(gamma.outputs["Color"], self.background.inputs["Color"])
+        scene = self.gather()
+        self.assertEqual(scene.world.radiance, (2, 2, 2))
+        np.testing.assert_allclose(scene.images[scene.textures[scene.world.texture].image].pixels, 0.25, rtol=1e-6)
+        self.assertEqual(scene.notes, [])

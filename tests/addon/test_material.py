@@ -57,6 +57,7 @@ class MaterialCase(unittest.TestCase):
     def texture(self, image):
         node = self.node("ShaderNodeTexImage")
         node.image = image
+        node.interpolation = "Closest"  # baked images keep their size
         return node
 
     def assertRgb(self, found, expected):
@@ -202,11 +203,18 @@ class NotUnderstood(MaterialCase):
         self.assertRgb(self.export().diffuse.value, MAGENTA)
         self.assertNoted("no output node")
 
-    def test_nodes_in_a_circle_are_magenta_and_named(self):
+    def test_nodes_in_a_circle_are_black_as_in_cycles_and_named(self):
         mix = self.node("ShaderNodeMixShader")
         self.tree.links.new(mix.outputs[0], mix.inputs[1])
-        self.assertRgb(self.export(mix).diffuse.value, MAGENTA)
+        self.assertRgb(self.export(mix).diffuse.value, (0, 0, 0))
         self.assertNoted("linked in a circle")
+
+    def test_muted_output_is_black_and_named(self):
+        self.output.mute = True
+        if not self.output.mute:
+            self.skipTest("this Blender's outputs cannot be muted")
+        self.assertRgb(self.export(self.node("ShaderNodeBsdfDiffuse")).diffuse.value, (0, 0, 0))
+        self.assertNoted("its output node is muted")
 
     def test_numbers_that_are_not_finite_are_magenta_and_named(self):
         ward = self.node("WardBSDFNode")
@@ -244,11 +252,44 @@ class NotUnderstood(MaterialCase):
         self.assertIsNone(data.diffuse.texture)
         self.assertNoted("material 'M'", "'Lost'", "lost.png", "missing")
 
-    def test_texture_that_is_not_an_image_is_noted_and_the_constant_used(self):
+    def test_what_cannot_be_said_is_neutral_and_noted(self):
         diffuse = self.node("ShaderNodeBsdfDiffuse", Color=(0.1, 0.2, 0.3, 1))
-        self.link(self.node("ShaderNodeTexNoise"), diffuse, "Color")
-        self.assertRgb(self.export(diffuse).diffuse.value, (0.1, 0.2, 0.3))
-        self.assertNoted("Noise Texture", "'Color'")
+        checker = self.node("ShaderNodeTexChecker", Color1=(0.8, 0.2, 0.1, 1), Color2=(0.2, 0.6, 0.5, 1))
+        brick = self.node(
+            "ShaderNodeTexBrick", Color1=(0.8, 0.2, 0.1, 1), Color2=(0.2, 0.6, 0.5, 1), Mortar=(0, 0, 0, 1)
+        )
+        area = (1 - 2 * 0.02 / 0.5) * (1 - 2 * 0.02 / 0.25)  # of the bricks
+        occlusion = self.node("ShaderNodeAmbientOcclusion", Color=(0.3, 0.4, 0.5, 1))
+        for node, output, expected in (
+            (self.node("ShaderNodeTexNoise"), 0, (0.5, 0.5, 0.5)),
+            (checker, "Color", (0.5, 0.4, 0.3)),
+            (brick, "Color", np.multiply((0.5, 0.4, 0.3), area)),
+            (occlusion, "Color", (0.3, 0.4, 0.5)),
+            (occlusion, "AO", (1, 1, 1)),
+            (self.node("ShaderNodeWireframe"), 0, (0, 0, 0)),
+            (self.node("ShaderNodeVertexColor"), "Color", (1, 1, 1)),
+        ):
+            with self.subTest(node.bl_idname):
+                self.context.notes.clear()
+                self.link(node, diffuse, "Color", output)
+                self.assertRgb(self.export(diffuse).diffuse.value, expected)
+                self.assertNoted(f"({node.bl_label}) is not supported as a colour or number", "instead")
+
+    def test_every_node_that_gives_a_value_is_understood_or_has_a_neutral_one(self):
+        from wardmis.export.read import CONVERTERS, NEUTRAL
+
+        # Cycles does not know them, or they are the ends of trees, or need a script
+        others = {"Script", "ShaderToRGB", "UVAlongStroke", "Squeeze", "Output", "Holdout", "EeveeSpecular", "Custom"}
+        for name in dir(bpy.types):
+            if not name.startswith("ShaderNode") or any(other in name for other in others):
+                continue
+            try:
+                node = self.tree.nodes.new(name)
+            except RuntimeError:
+                continue  # the name of a kind of nodes
+            if any(socket.type in {"VALUE", "RGBA", "VECTOR"} for socket in node.outputs):
+                with self.subTest(name):
+                    self.assertIn(name, CONVERTERS | NEUTRAL)
 
     def test_volume_displacement_and_normals_are_noted(self):
         diffuse = self.node("ShaderNodeBsdfDiffuse")
@@ -378,6 +419,25 @@ class Values(MaterialCase):
         self.assertRgb(data.diffuse.value, (0.75, 0.75, 0.75))
         self.assertEqual(self.context.images[0].name, "I")
 
+    def test_baked_images_are_told_apart(self):
+        image = self.image([[(0.2, 0.4, 0.6, 1), (0.9, 0.1, 0.3, 1)]])
+        found = []
+        for texture_first in (True, False):
+            mix = self.node("ShaderNodeMixRGB", i0=0.3, i1=(1, 1, 1, 1), i2=(1, 1, 1, 1))
+            self.link(self.texture(image), mix, 1 if texture_first else 2)
+            found.append(self.pixels(self.of(mix))[0, 0])
+        np.testing.assert_allclose(found, [(0.44, 0.58, 0.72), (0.76, 0.82, 0.88)], rtol=1e-5)
+        found = []
+        for position in (0.3, 0.31):  # between two of any few points at which one may look
+            ramp = self.node("ShaderNodeValToRGB")
+            ramp.color_ramp.interpolation = "CONSTANT"
+            ramp.color_ramp.elements.new(0.29).color = (1, 0, 0, 1)
+            ramp.color_ramp.elements.new(position).color = (0, 1, 0, 1)
+            grey = self.image([[(0.305, 0.305, 0.305, 1)]], "Grey")
+            self.link(self.texture(grey), ramp, 0)
+            found.append(self.pixels(self.of(ramp))[0, 0])
+        np.testing.assert_allclose(found, [(0, 1, 0), (1, 0, 0)])
+
     def test_texture_behind_nodes_is_baked(self):
         image = self.image([[(0.25, 0.5, 1, 1), (0, 1, 0.5, 1)]])
         gamma = self.node("ShaderNodeGamma", Gamma=2.0)
@@ -401,12 +461,27 @@ class Values(MaterialCase):
             np.testing.assert_allclose(self.pixels(alpha)[..., 0] * alpha.value, [(0.25, 0.04)], rtol=1e-5)
         self.assertEqual(len(self.context.images), 1)
 
+    def test_a_small_image_that_is_filtered_is_baked_finer(self):
+        """Nodes see filtered colours, so that what a threshold makes of two texels is a sharp edge half way between them."""
+        texture, above = self.texture(self.image([[(0, 0, 0, 1), (1, 1, 1, 1)]])), self.node("ShaderNodeMath", i1=0.5)
+        above.operation = "GREATER_THAN"
+        texture.interpolation, texture.extension = "Linear", "EXTEND"
+        self.link(texture, above, 0)
+        pixels = self.pixels(self.of(above))
+        self.assertEqual(pixels.shape, (128, 256, 3))
+        np.testing.assert_array_equal(pixels[0, :, 0], np.arange(256) >= 128)
+
     def test_srgb_texels_are_decoded_before_they_are_baked(self):
         image = self.image([[(0.5, 0.5, 0.5, 1)]], color_space="sRGB", is_float=False)
         invert = self.node("ShaderNodeInvert")
         self.link(self.texture(image), invert, "Color")
         linear = ((128 / 255 + 0.055) / 1.055) ** 2.4
-        np.testing.assert_allclose(self.pixels(self.of(invert))[0, 0], [1 - linear] * 3, rtol=1e-5)
+        # and encoded again, since Cycles filters before it decodes
+        encoded = 1.055 * (1 - linear) ** (1 / 2.4) - 0.055
+        found = self.of(invert)
+        np.testing.assert_allclose(self.pixels(found)[0, 0], [encoded] * 3, rtol=1e-5)
+        exported = self.context.images[self.context.textures[found.texture.index].image]
+        self.assertEqual((exported.color_space, exported.filter_encoded), ("sRGB", True))
 
     def test_alpha_output_of_an_image(self):
         image = self.image([[(0.5, 0.5, 0.5, 0.25)]])
@@ -435,7 +510,17 @@ class Values(MaterialCase):
         mapping.vector_type = "TEXTURE"
         # the inverse: u = (v' - 0.2)/2 ..., v = -(u' - 0.1)/3
         np.testing.assert_allclose(self.of(texture).texture.transform, (0, 0.5, -0.1, -1 / 3, 0, 0.1 / 3), atol=1e-6)
+        mapping.vector_type = "VECTOR"  # without its location
+        np.testing.assert_allclose(self.of(texture).texture.transform, (0, -3, 0, 2, 0, 0), atol=1e-6)
+        own = texture.texture_mapping
+        own.translation, own.scale, own.mapping_x, own.mapping_y = (0.5, 0, 0), (4, 1, 1), "Y", "X"
+        # (-3 v, 2 u) is swapped, scaled and moved
+        np.testing.assert_allclose(self.of(texture).texture.transform, (8, 0, 0.5, 0, -3, 0), atol=1e-6)
         self.assertEqual(self.context.notes, [])
+        mapping.vector_type = "NORMAL"
+        self.assertIsNone(self.of(texture).texture)
+        self.assertNoted("type Normal", "mean")
+        mapping.vector_type = "POINT"
         self.link(coordinates, mapping, "Vector", "Generated")
         self.of(texture)
         self.assertNoted("Generated")

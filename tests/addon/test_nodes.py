@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 from wardmis import compat, nodes
-from wardmis.export.material import SHADERS
+from wardmis.export.shader import SHADERS
 
 
 def trees():

@@ -9,7 +9,8 @@ from typing import Any
 
 from .model import ImageData, TextureData, not_finite
 
-WRAPS = {"REPEAT": "repeat", "EXTEND": "clamp", "CLIP": "clamp", "MIRROR": "mirror"}
+WRAPS = {"REPEAT": "repeat", "EXTEND": "clamp", "CLIP": "clip", "MIRROR": "mirror"}
+FILTERS = {"Linear": "linear", "Closest": "nearest", "Cubic": "cubic", "Smart": "cubic"}
 
 
 class ExportError(Exception):
@@ -34,7 +35,10 @@ class Note(str):
 class ExportContext:
     """Handed to every part of the export; `owner` is the object being exported, for messages."""
 
-    def __init__(self, export_image: Callable[[Any], ImageData], cancelled: Callable[[], bool] | None = None) -> None:
+    def __init__(
+        self, export_image: Callable[[Any], ImageData], cancelled: Callable[[], bool] | None = None, frame: int = 1
+    ) -> None:
+        self.frame = frame  # of the scene
         self.images: list[ImageData] = []
         self.textures: list[TextureData] = []
         self.notes: list[str] = []
@@ -43,7 +47,7 @@ class ExportContext:
         self._cancelled = cancelled
         self._next_check = 0.0
         self._image_index: dict[str, int] = {}
-        self._texture_index: dict[tuple[int, str, bool], int] = {}
+        self._texture_index: dict[tuple[int, str, str], int] = {}
 
     def note(self, text: str) -> None:
         """Tells the user, once, about something that is rendered other than Blender shows it."""
@@ -51,19 +55,16 @@ class ExportContext:
             self.notes.append(Note(text, self.owner))
 
     def texture(self, image: Any, interpolation: str = "Linear", extension: str = "REPEAT") -> int:
-        """The index of a texture that looks `image` (a bpy Image) up as an Image Texture node with these settings does.
+        """The index of a texture that looks `image`, one of image.py's, up as an Image Texture node with these settings does.
 
         How the pixels are decoded follows from the image's own colour space, as in Blender, not from what they are used for.
         """
-        # the library is part of the name: two linked images may be called the same
         key = image.name_full
         if key not in self._image_index:
             self.images.append(self._export_image(image))
             self._image_index[key] = len(self.images) - 1
-        if extension == "CLIP":
-            self.note(f"image '{image.name}': extension Clip is not supported; its border pixels are repeated instead")
-        texture = TextureData(self._image_index[key], WRAPS[extension], interpolation == "Closest")
-        texture_key = (texture.image, texture.wrap, texture.nearest)
+        texture = TextureData(self._image_index[key], WRAPS[extension], FILTERS[interpolation])
+        texture_key = (texture.image, texture.wrap, texture.filter)
         if texture_key not in self._texture_index:
             self._texture_index[texture_key] = len(self.textures)
             self.textures.append(texture)

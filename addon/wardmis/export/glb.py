@@ -39,7 +39,7 @@ Z_UP = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]], np.fl
 FLOAT, UINT32 = 5126, 5125
 TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
 ARRAY_BUFFER, INDEX_BUFFER = 34962, 34963
-WRAP = {"repeat": 10497, "clamp": 33071, "mirror": 33648}
+WRAP = {"repeat": 10497, "clamp": 33071, "mirror": 33648, "clip": 33071}
 NEAREST, LINEAR = 9728, 9729
 CORE_IMAGES = {"image/png", "image/jpeg"}
 WRITE_STEP = 16 << 20
@@ -154,6 +154,10 @@ class _Encoder:
 
     def _image(self, image: ImageData) -> dict[str, Any]:
         extension: dict[str, Any] = {"colorSpace": image.color_space}
+        if image.filter_encoded:
+            extension["filterEncoded"] = True
+        if image.alpha_multiplies:
+            extension["alphaMultiplies"] = True
         if image.encoded is not None:
             return {
                 "name": image.name,
@@ -172,15 +176,23 @@ class _Encoder:
             "extensions": {EXTENSION: extension},
         }
 
-    def _textures(self, scene: SceneData) -> tuple[list[dict[str, int]], list[dict[str, int]]]:
+    def _textures(self, scene: SceneData) -> tuple[list[dict[str, int]], list[dict[str, Any]]]:
         samplers: list[dict[str, int]] = []
         textures = []
         for texture in scene.textures:
             wrap = WRAP[texture.wrap]
-            sampler = {"magFilter": NEAREST if texture.nearest else LINEAR, "wrapS": wrap, "wrapT": wrap}
+            sampler = {"magFilter": NEAREST if texture.filter == "nearest" else LINEAR, "wrapS": wrap, "wrapT": wrap}
             if sampler not in samplers:
                 samplers.append(sampler)
-            textures.append({"sampler": samplers.index(sampler), "source": texture.image})
+            result: dict[str, Any] = {"sampler": samplers.index(sampler), "source": texture.image}
+            extension = {}
+            if texture.filter == "cubic":
+                extension["filter"] = "cubic"
+            if texture.wrap == "clip":
+                extension["wrap"] = "clip"
+            if extension:
+                result["extensions"] = {EXTENSION: extension}
+            textures.append(result)
             self._texture_is_core.append(scene.images[texture.image].mime_type in CORE_IMAGES)
         return samplers, textures
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -11,8 +12,11 @@ from typing import Any
 import bpy
 import numpy as np
 
-from .emission import MISSING
-from .model import ImageData
+from .. import compat
+from .model import ImageData, Rgb
+
+# what stands in for an image that cannot be shown: never black, easy to see, and Blender's own sign for it
+MISSING: Rgb = (1.0, 0.0, 1.0)
 
 # How files begin that the renderer reads without OpenImageIO, which the packaged one does not have.
 SIGNATURES = (
@@ -21,7 +25,9 @@ SIGNATURES = (
     (b"\x76\x2f\x31\x01", "image/x-exr"),
 )
 COLOR_SPACES = {"sRGB": "sRGB", "Linear": "linear", "Linear Rec.709": "linear", "Non-Color": "linear", "Raw": "linear"}
-MOVING = {"SEQUENCE", "MOVIE"}
+DATA = {"Non-Color", "Raw"}  # no colours: alpha means nothing to them
+WITH_ALPHA = {16, 32, 128}  # bits of a pixel in the file
+GREY_AND_ALPHA = 16
 
 
 @dataclass(frozen=True)
@@ -30,108 +36,222 @@ class BakedImage:
 
     name: str
     name_full: str
-    pixels: Callable[[], np.ndarray]  # (height, width, channels) float32, linear
+    pixels: Callable[[], np.ndarray]  # (height, width, channels) float32
+    is_encoded: bool  # whether they are sRGB, to be filtered as such
 
 
-def export_image(image: Any) -> ImageData:
-    """`image`: Blender's, or a BakedImage. A missing one becomes a magenta texel, Blender's own sign for it."""
-    if isinstance(image, BakedImage):
-        return ImageData(image.name, "linear", pixels=image.pixels())
-    if missing(image):
-        return ImageData(image.name, "linear", pixels=texels(image)[..., :3])
-    color_space = COLOR_SPACES.get(image.colorspace_settings.name, "sRGB")
-    mime_type = _mime_type(image)
-    if mime_type and image.colorspace_settings.name in COLOR_SPACES:
-        return ImageData(image.name, color_space, encoded=_file(image), mime_type=mime_type)
-    pixels = _pixels(image)
-    # Blender has already turned float pixels into linear ones
-    return ImageData(image.name, "linear" if pixels.dtype == np.float32 else color_space, pixels=pixels)
+@dataclass(frozen=True)
+class Picture:
+    """What an image node shows of an image, as Cycles does: which picture of a sequence, and what alpha does to the colours.
+
+    `alpha`: the colours are "kept" as they are stored, "multiplied" by it or "divided" by it.
+    """
+
+    image: Any
+    alpha: str = "kept"
+    frame: int | None = None  # of a sequence
+
+    @property
+    def name(self) -> str:
+        return str(self.image.name)
+
+    @property
+    def name_full(self) -> str:
+        """Unlike all other pictures'. The library is part of it: two linked images may be called the same."""
+        return f"{self.image.name_full} {self.alpha} {self.frame}"
+
+    @property
+    def is_encoded(self) -> bool:
+        """Whether it is kept and filtered as sRGB. Blender has made the pixels linear of a float image that is not read from a file."""
+        return self._space == "sRGB" and (not self.image.is_float or self.mime_type != "")
+
+    @property
+    def _space(self) -> str:
+        return COLOR_SPACES.get(self.image.colorspace_settings.name, "sRGB")
+
+    @property
+    def path(self) -> str:
+        path = self.image.filepath
+        if self.image.source == "TILED":
+            path = path.replace("<UDIM>", str(self.image.tiles[0].number))
+        path = bpy.path.abspath(path, library=self.image.library)
+        return str(path) if self.frame is None else path_of_frame(path, self.frame)
+
+    @property
+    def mime_type(self) -> str:
+        """Of the file that the image was read from, if it is still what the file holds and the renderer reads such files."""
+        if self.image.is_dirty or self.image.source not in {"FILE", "TILED", "SEQUENCE"}:
+            return ""
+        head = self._file(16)
+        return next((mime_type for signature, mime_type in SIGNATURES if head.startswith(signature)), "")
+
+    def export(self) -> ImageData:
+        """A missing one becomes a magenta texel."""
+        if self.missing():
+            return ImageData(self.name, "linear", pixels=self.texels()[..., :3])
+        mime_type = self.mime_type
+        readable = self.image.colorspace_settings.name in COLOR_SPACES and self.alpha != "divided"
+        if mime_type and readable:
+            multiplied = self.alpha == "multiplied"
+            return ImageData(
+                self.name,
+                self._space,
+                encoded=self._file(),
+                mime_type=mime_type,
+                filter_encoded=self.is_encoded,
+                alpha_multiplies=multiplied,
+            )
+        space = "sRGB" if self.is_encoded else "linear"
+        return ImageData(self.name, space, pixels=self._stored(), filter_encoded=self.is_encoded)
+
+    def texels(self, filtered: Callable[[np.ndarray], np.ndarray] = lambda pixels: pixels) -> np.ndarray:
+        """(height, width, 4) float32: linear RGBA, rows from the bottom; after `filtered` of what is stored, as floats."""
+        if self.missing():
+            return np.array([[(*MISSING, 1.0)]], np.float32)
+        if 0 in self.image.size:  # a picture of a sequence that Blender has not looked at
+            return np.array([[(0.5, 0.5, 0.5, 1.0)]], np.float32)
+        stored = self._stored()
+        pixels = filtered(stored.astype(np.float32) / np.float32(255 if stored.dtype == np.uint8 else 1))
+        height, width, channels = pixels.shape
+        if channels < 3:
+            pixels = np.repeat(pixels[..., :1], 3, axis=-1)
+        alpha = pixels[..., 3:] if channels == 4 else np.ones((height, width, 1), np.float32)
+        colors = pixels[..., :3]
+        return np.concatenate([decode_srgb(colors) if self.is_encoded else colors, alpha], axis=-1)
+
+    def missing(self) -> str | None:
+        """Why there are no pixels, naming the image and its file, or None."""
+        reason = self._reason_missing()
+        return f"image '{self.name}' cannot be shown: {reason}" if reason else None
+
+    def _reason_missing(self) -> str | None:
+        image = self.image
+        if image.type == "MULTILAYER":
+            return "a multi-layer EXR cannot be read as a texture; save the layer as an image of its own"
+        if image.source == "VIEWER":
+            return "a render or viewer result cannot be read as a texture; save it as a file"
+        path = self.path
+        if image.source in {"FILE", "SEQUENCE"} and not image.is_dirty and not image.packed_files:
+            if not os.path.isfile(path):
+                kind = (
+                    "a folder" if os.path.isdir(path) else "a device or a pipe" if os.path.exists(path) else "missing"
+                )
+                return f"its file '{path}' is {kind}"
+            if self.frame is not None and self.mime_type:
+                return None  # Blender may not have looked at it
+        if 0 in image.size:  # Blender has tried: a damaged file, too, is better found here than by the renderer
+            return f"it cannot be read from '{path}'"
+        return None
+
+    def deviations(self) -> list[str]:
+        """What is rendered other than Blender shows it, naming the image."""
+        found = []
+        image = self.image
+        space = image.colorspace_settings.name
+        if space not in COLOR_SPACES and not image.is_float:
+            found.append(f"colour space '{space}' is not supported; its colours are read as sRGB")
+        if image.source == "TILED" and len(image.tiles) > 1:
+            found.append(f"UDIM tiles are not supported; tile {image.tiles[0].number} is used everywhere")
+        if image.source == "MOVIE":
+            found.append("movies are not supported; the picture that Blender holds now is used")
+        if image.source == "SEQUENCE" and not self.mime_type:
+            found.append(
+                "a sequence of files other than PNG, JPEG or EXR is not supported; the picture that Blender holds now is used"
+            )
+        return [f"image '{image.name}': {deviation}" for deviation in found]
+
+    def _file(self, size: int = -1) -> bytes:
+        """The first bytes, or all, of the file on disk or packed."""
+        if self.image.packed_files:
+            content = bytes(self.image.packed_files[0].packed_file.data)
+            return content[:size] if size >= 0 else content
+        try:
+            with open(self.path, "rb") as file:
+                return file.read(size)
+        except OSError:
+            return b""
+
+    def _stored(self) -> np.ndarray:
+        """(height, width, channels) uint8, or float32 where the image is one or alpha divides: sRGB if `is_encoded`, else linear."""
+        image = self.image
+        width, height = image.size
+        pixels = np.empty(width * height * image.channels, np.float32)
+        image.pixels.foreach_get(pixels)
+        pixels = pixels.reshape(height, width, image.channels)
+        if not image.is_float:
+            pixels = np.rint(pixels * 255.0).astype(np.uint8)
+        elif self.mime_type == "image/png" and image.channels == 4:  # Blender multiplies them by alpha on loading
+            pixels = np.concatenate([_over_alpha(pixels), pixels[..., 3:]], axis=-1)
+        if image.is_float and self.is_encoded:
+            pixels = np.concatenate([encode_srgb(pixels[..., :3]), pixels[..., 3:]], axis=-1)
+        if image.channels < 4 or self.alpha == "kept":
+            return pixels
+        if self.alpha == "multiplied":
+            if pixels.dtype == np.uint8:
+                pixels[..., :3] = pixels[..., :3].astype(np.uint16) * pixels[..., 3:] // 255
+            else:
+                pixels[..., :3] *= pixels[..., 3:]
+            return pixels
+        values = pixels.astype(np.float32) / np.float32(255 if pixels.dtype == np.uint8 else 1)
+        return np.concatenate([_over_alpha(values), values[..., 3:]], axis=-1)
 
 
-def missing(image: Any) -> str | None:
-    """Why there are no pixels, naming the image and its file, or None."""
-    reason = _reason_missing(image)
-    return f"image '{image.name}' cannot be shown: {reason}" if reason else None
+def picture_of(image: Any, shows_alpha: bool, user: Any, scene_frame: int) -> Picture:
+    """The picture that a node with the image user `user` shows; `shows_alpha`: its Alpha output is used.
 
-
-def _reason_missing(image: Any) -> str | None:
-    if image.type == "MULTILAYER":
-        return "a multi-layer EXR cannot be read as a texture; save the layer as an image of its own"
-    if image.source == "VIEWER":
-        return "a render or viewer result cannot be read as a texture; save it as a file"
-    path = _path(image)
-    if image.source == "FILE" and not image.is_dirty and not image.packed_file and not os.path.isfile(path):
-        kind = "a folder" if os.path.isdir(path) else "a device or a pipe" if os.path.exists(path) else "missing"
-        return f"its file '{path}' is {kind}"
-    if 0 in image.size:  # Blender has tried: a damaged file, too, is better found here than by the renderer
-        return f"it cannot be read from '{path}'"
-    return None
-
-
-def deviations(image: Any) -> list[str]:
-    """What is rendered other than Blender shows it, naming the image."""
-    found = []
+    Cycles multiplies colours by alpha where the file has not done so, and divides them again where the alpha is used.
+    """
+    alpha = "kept"
     space = image.colorspace_settings.name
-    if space not in COLOR_SPACES and not image.is_float:
-        found.append(f"colour space '{space}' is not supported; its colours are read as sRGB")
-    if image.source == "TILED" and len(image.tiles) > 1:
-        found.append(f"UDIM tiles are not supported; tile {image.tiles[0].number} is used everywhere")
-    if image.source in MOVING:
-        found.append("movies and sequences are not supported; the picture that Blender holds now is used")
-    return [f"image '{image.name}': {deviation}" for deviation in found]
+    if image.alpha_mode in {"STRAIGHT", "PREMUL"} and space not in DATA and image.depth in WITH_ALPHA:
+        integers = not image.is_float or Picture(image).mime_type == "image/png"
+        is_done = (
+            not integers
+            or image.depth == GREY_AND_ALPHA
+            or (image.alpha_mode == "PREMUL" and compat.PREMULTIPLIED_FILES_ARE_TRUSTED)
+        )
+        alpha = ("divided" if shows_alpha else "kept") if is_done else ("kept" if shows_alpha else "multiplied")
+    return Picture(image, alpha, frame_of(user, scene_frame) if image.source == "SEQUENCE" else None)
 
 
-def texels(image: Any) -> np.ndarray:
-    """(height, width, 4) float32: linear RGBA, rows from the bottom."""
-    if missing(image):
-        return np.array([[(*MISSING, 1.0)]], np.float32)
-    pixels = _pixels(image)
-    if pixels.dtype == np.uint8:
-        code = np.arange(256, dtype=np.float32) / 255.0
-        if COLOR_SPACES.get(image.colorspace_settings.name, "sRGB") == "sRGB":
-            linear = np.where(code <= 0.04045, code / 12.92, ((code + 0.055) / 1.055) ** 2.4).astype(np.float32)
-        else:
-            linear = code
-        pixels = np.concatenate([linear[pixels[..., :3]], code[pixels[..., 3:]]], axis=-1)
-    height, width, channels = pixels.shape
-    if channels < 3:
-        pixels = np.repeat(pixels[..., :1], 3, axis=-1)
-    if channels < 4:
-        pixels = np.concatenate([pixels, np.ones((height, width, 1), np.float32)], axis=-1)
-    return pixels
+def frame_of(user: Any, scene_frame: int) -> int:
+    """The number of the picture that an image user shows in this frame."""
+    number = scene_frame - user.frame_start + 1
+    length = user.frame_duration
+    if length == 0:
+        return 0
+    if user.use_cyclic:
+        number = number % length or length
+    return int(min(max(number, 0), length) + user.frame_offset)
 
 
-def _path(image: Any) -> str:
-    path = image.filepath
-    if image.source == "TILED":
-        path = path.replace("<UDIM>", str(image.tiles[0].number))
-    return str(bpy.path.abspath(path, library=image.library))
+def path_of_frame(path: str, frame: int) -> str:
+    """The path of a picture of a sequence, of which `path` is one: the last digits of the name are its number."""
+    folder, name = os.path.split(path)
+    number = re.search(r"(\d+)(?=\D*$)", name)
+    if number is None:
+        return path
+    return os.path.join(folder, f"{name[: number.start()]}{frame:0{len(number[1])}}{name[number.end() :]}")
 
 
-def _mime_type(image: Any) -> str:
-    """Of the file that the image was read from, if it is still what the file holds and the renderer reads such files."""
-    if image.is_dirty or image.source not in {"FILE", "TILED"}:
-        return ""
-    head = _file(image, 16)
-    return next((mime_type for signature, mime_type in SIGNATURES if head.startswith(signature)), "")
+def export_image(image: Picture | BakedImage) -> ImageData:
+    if isinstance(image, BakedImage):
+        space = "sRGB" if image.is_encoded else "linear"
+        return ImageData(image.name, space, pixels=image.pixels(), filter_encoded=image.is_encoded)
+    return image.export()
 
 
-def _file(image: Any, size: int = -1) -> bytes:
-    """The first bytes, or all, of the file on disk or packed."""
-    if image.packed_files:
-        content = bytes(image.packed_files[0].packed_file.data)
-        return content[:size] if size >= 0 else content
-    try:
-        with open(_path(image), "rb") as file:
-            return file.read(size)
-    except OSError:
-        return b""
+def decode_srgb(v: np.ndarray) -> np.ndarray:
+    curve = ((np.maximum(v, 0.0) + 0.055) / 1.055) ** 2.4
+    return np.where(v <= 0.04045, v / 12.92, curve).astype(np.float32)
 
 
-def _pixels(image: Any) -> np.ndarray:
-    """(height, width, channels) uint8 as in the file, or float32 and linear, rows from the bottom."""
-    width, height = image.size
-    pixels = np.empty(width * height * image.channels, np.float32)
-    image.pixels.foreach_get(pixels)
-    pixels = pixels.reshape(height, width, image.channels)
-    return pixels if image.is_float else np.rint(pixels * 255.0).astype(np.uint8)
+def encode_srgb(v: np.ndarray) -> np.ndarray:
+    curve = 1.055 * np.maximum(v, 0.0) ** (1 / 2.4) - 0.055
+    return np.where(v <= 0.0031308, v * 12.92, curve).astype(np.float32)
+
+
+def _over_alpha(pixels: np.ndarray) -> np.ndarray:
+    """(height, width, 3): the colours of float RGBA, divided by its alpha where that is not 0."""
+    alpha = pixels[..., 3:]
+    return np.divide(pixels[..., :3], alpha, out=pixels[..., :3].copy(), where=alpha != 0)

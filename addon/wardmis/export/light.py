@@ -14,8 +14,10 @@ import numpy as np
 
 from .. import compat
 from .context import ExportContext, ExportError
-from .emission import constant_color, note_unsupported, strength, surface
 from .model import LARGEST, LightData, Rgb
+from .shader import shader
+from .tree import Owner, output_use
+from .value import NotFinite
 
 
 def export_light(
@@ -49,16 +51,20 @@ def export_light(
 
 
 def _node_factor(light: Any, context: ExportContext) -> Rgb:
-    """What an Emission node in the light's tree multiplies the light by."""
-    shader = surface(light, "light", context)
-    if shader is None:
+    """What the light's nodes multiply the light by."""
+    owner = Owner("light", f"light '{light.name}'", context)
+    output = output_use(light.node_tree, "Surface", owner)
+    try:
+        if output is None or output.source("Surface").is_nothing:
+            context.note(f"{owner.place}: no node is connected to its output; it gives no light")
+            return (0.0, 0.0, 0.0)
+        r, g, b = (float(v) for v in shader(output, "Surface").emission.mean().factor)
+    except RecursionError:
+        context.note(f"{owner.place} has nodes that are linked in a circle; it gives no light")
         return (0.0, 0.0, 0.0)
-    if shader.node.bl_idname != "ShaderNodeEmission":
-        note_unsupported(shader.node, light, "light", context, "the light's own colour and power are used alone")
-        return (1.0, 1.0, 1.0)
-    factor = strength(shader.node, light, "light", context)
-    r, g, b = constant_color(shader.node, light, "light", context)
-    return (r * factor, g * factor, b * factor)
+    except NotFinite:
+        return (0.0, 0.0, 0.0)  # noted where it was found
+    return (r, g, b)
 
 
 def _area(light: Any, power: float, data: LightData) -> None:

@@ -39,6 +39,8 @@ class ImageData:
     encoded: bytes | None = None  # the bytes of a file of type `mime_type`
     mime_type: str = ""  # image/png, image/jpeg, image/x-exr
     pixels: np.ndarray | None = None  # (height, width, channels 1..4), uint8 or float32, rows from the bottom
+    filter_encoded: bool = False  # sRGB values are filtered as they are, and decoded after that
+    alpha_multiplies: bool = False  # the colours are to be multiplied by alpha as they are
 
 
 @dataclass
@@ -46,8 +48,8 @@ class TextureData:
     """How an image is looked up. Its index in `SceneData.textures` is what materials and the world hold."""
 
     image: int  # index into SceneData.images
-    wrap: str = "repeat"  # "repeat", "clamp", "mirror", in both directions
-    nearest: bool = False
+    wrap: str = "repeat"  # "repeat", "clamp", "mirror", "clip", in both directions
+    filter: str = "linear"  # "linear", "nearest", "cubic"
 
 
 @dataclass

@@ -45,7 +45,7 @@ def gather_scene(
     scene = depsgraph.scene_eval
     camera = camera or scene.camera
     film = export_film(scene)
-    context = ExportContext(export_image, cancelled)
+    context = ExportContext(export_image, cancelled, scene.frame_current)
     gatherer = _Gatherer(depsgraph, context)
     _note_scene_settings(scene, context)
     camera_data = export_camera(camera.evaluated_get(depsgraph) if camera else None, scene.render)

@@ -152,7 +152,7 @@ TEST(Glb, ReadsEverything) {
   const Texture& alpha = s.textures.at(plate.alphaY.texture.texture);
   EXPECT_EQ(alpha.wrapU, Wrap::kClamp);
   EXPECT_EQ(alpha.wrapV, Wrap::kMirror);
-  EXPECT_TRUE(alpha.nearest);
+  EXPECT_EQ(alpha.filter, Filter::kNearest);
   EXPECT_FLOAT_EQ(s.images.at(alpha.image).floats.at(1), 0.5f);
   const Image& pixels = s.images.at(s.textures.at(plate.diffuse.texture.texture).image);
   EXPECT_TRUE(pixels.srgb);
@@ -350,6 +350,21 @@ TEST(Glb, AppliesTextureTransforms) {
   expectNear(at(1, 0), {0.5f, 0.5f, 0});
 }
 
+TEST(Glb, TexturesAsBlenderFiltersThem) {
+  GlbBuilder b = textured(ward({{"diffuse", {{"texture", {{"index", 0}}}}}}));
+  rawTexture<uint8_t>(b, 1, 1, 4, {100, 200, 255, 51});
+  json& image = b.root["images"][0]["extensions"]["WARDMIS_scene"];
+  image["colorSpace"] = "sRGB";
+  image["filterEncoded"] = image["alphaMultiplies"] = true;
+  b.root["textures"][0]["extensions"]["WARDMIS_scene"] = {{"filter", "cubic"}, {"wrap", "clip"}};
+  const Scene s = read(b);
+  EXPECT_EQ(s.textures.at(0).filter, Filter::kCubic);
+  EXPECT_EQ(s.textures.at(0).wrapU, Wrap::kClip);
+  EXPECT_EQ(s.textures.at(0).wrapV, Wrap::kClip);
+  EXPECT_TRUE(s.images.at(0).filterEncoded);
+  EXPECT_EQ(s.images.at(0).bytes, (std::vector<uint8_t>{20, 40, 51, 51}));  // a fifth
+}
+
 TEST(Glb, LoadsImagesFromTheFileAndItsFolder) {
   const TemporaryFolder folder;
   folder.write("sub/wood grain.png", png2x1({255, 0, 0, 0, 255, 0}));
@@ -443,8 +458,8 @@ TEST(Glb, MendsImages) {
   GlbBuilder b = textured(ward({{"diffuse", {{"texture", {{"index", 0}}}}}}));
   rawTexture<float>(b, 2, 2, 1, {NAN, -1, INFINITY, 0.5f});
   const Scene s = read(b);
-  EXPECT_EQ(s.images[0].floats, (std::vector<float>{0, 0, 0, 0.5f}));
-  EXPECT_TRUE(listHas(s.leftOut, "3 values of image 'Pixels'"));
+  EXPECT_EQ(s.images[0].floats, (std::vector<float>{0, -1, 0, 0.5f}));
+  EXPECT_TRUE(listHas(s.leftOut, "2 values of image 'Pixels'"));
 }
 
 // One image is no reason not to render the rest: it is magenta, and named.

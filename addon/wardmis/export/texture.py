@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Image and environment nodes -> a look-up, with the mappings of coordinates before it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from mathutils import Euler, Matrix, Vector
+
+from .image import MISSING, Picture, picture_of
+from .tree import NodeUse
+from .value import Lookup, Value, constant
+
+UNKNOWN_LIGHT = 0.5  # of a sky or a lamp whose image cannot be shown
+
+
+class NoMap(Exception):
+    """Coordinates that no affine map gives, in words."""
+
+
+def image_texture(use: NodeUse, output: Any) -> Value:
+    node = use.node
+    picture = _picture(use)
+    if picture is None:
+        return _missing(use)
+    if node.projection != "FLAT":
+        use.note(f"has the projection {node.projection.title()}, which is not supported; the image is mapped by UVs")
+    try:
+        if use.owner.kind != "material":
+            raise NoMap(f"is mapped by UVs, which a {use.owner.kind} has not")
+        lookup = Lookup(picture, node.interpolation, node.extension, _transform(use))
+    except NoMap as reason:
+        use.note(f"{reason}; its mean is used everywhere")
+        lookup = Lookup(picture, node.interpolation, node.extension, (1, 0, 0, 0, 1, 0))
+        return _shown(lookup, output).mean()
+    return _shown(lookup, output)
+
+
+def environment_texture(use: NodeUse, output: Any) -> Value:
+    node = use.node
+    picture = _picture(use)
+    if picture is None:
+        return _missing(use)
+    if node.projection != "EQUIRECTANGULAR":
+        use.note(
+            f"has the projection {node.projection.title()}, which is not supported; the image is read as equirectangular"
+        )
+    turn = _directions(use) if use.owner.kind == "world" else np.eye(3)
+    value = _shown(Lookup(picture, node.interpolation, "REPEAT", tuple(turn.reshape(-1).tolist())), output)
+    if use.owner.kind == "world":
+        return value
+    use.note(f"is looked up by direction, which a {use.owner.kind} cannot; its mean is used everywhere")
+    return value.mean()
+
+
+def _shown(lookup: Lookup, output: Any) -> Value:
+    if output.name == "Alpha":
+        return Value(np.ones(3), lookup, lambda texel: np.repeat(texel[..., 3:], 3, axis=-1), "alpha")
+    return Value(np.ones(3), lookup)
+
+
+def _picture(use: NodeUse) -> Picture | None:
+    """None, and a note, where there is nothing to show."""
+    node = use.node
+    instead = "magenta is" if use.owner.kind == "material" else "grey light is"
+    if node.image is None:
+        use.note(f"has no image; {instead} shown instead")
+        return None
+    alpha = node.outputs.get("Alpha")
+    picture = picture_of(node.image, alpha is not None and alpha.is_linked, node.image_user, use.owner.context.frame)
+    reason = picture.missing()
+    if reason is not None:
+        use.note(f"needs an image; {reason}; {instead} shown instead")
+        return None
+    for deviation in picture.deviations():
+        use.note(f"shows {deviation}")
+    return picture
+
+
+def _missing(use: NodeUse) -> Value:
+    return constant(MISSING if use.owner.kind == "material" else UNKNOWN_LIGHT)
+
+
+# ---- coordinates ---------------------------------------------------------------------------------------------------
+
+
+def _transform(use: NodeUse) -> tuple[float, ...]:
+    """The affine map from the mesh's UVs to those of an image."""
+    matrix = _own_mapping(use.node.texture_mapping)
+    origin = use.source("Vector")
+    while origin.use is not None and origin.use.node.bl_idname == "ShaderNodeMapping":
+        matrix = matrix @ _mapping(origin.use)
+        origin = origin.use.source("Vector")
+    if origin.use is not None and origin.use.node.bl_idname == "ShaderNodeUVMap":
+        name = origin.use.node.uv_map
+        if name:
+            origin.use.note(f"names the UV map '{name}'; the one that is active for rendering is used")
+    elif origin.use is not None and (origin.use.node.bl_idname, origin.socket.name) != ("ShaderNodeTexCoord", "UV"):
+        origin.use.note(f"gives coordinates ({origin.socket.name}) that are not supported; UVs are used instead")
+    (a, b, _, c), (d, e, _, f) = matrix[0], matrix[1]
+    return (a, b, c, d, e, f)
+
+
+def _directions(use: NodeUse) -> np.ndarray:
+    """The matrix from a direction of the world to the one that is looked up in the image."""
+    own = use.node.texture_mapping
+    matrix = _linear_part(use, own.vector_type, own.translation, own.rotation, own.scale) @ _axes(own).to_3x3()
+    origin = use.source("Vector")
+    while origin.use is not None and origin.use.node.bl_idname == "ShaderNodeMapping":
+        matrix = matrix @ _linear_part(origin.use, origin.use.node.vector_type, *_mapping_inputs(origin.use))
+        origin = origin.use.source("Vector")
+    if origin.use is not None and (origin.use.node.bl_idname, origin.socket.name) != (
+        "ShaderNodeTexCoord",
+        "Generated",
+    ):
+        origin.use.note(
+            f"gives coordinates ({origin.socket.name}) that are not supported; those of Texture Coordinate (Generated) are used instead"
+        )
+    return np.array(matrix)
+
+
+def _linear_part(use: NodeUse, kind: str, location: Any, rotation: Any, scale: Any) -> Matrix:
+    """An image of directions can be turned and mirrored, nothing else."""
+    if (
+        not np.allclose(np.abs(scale), np.abs(scale[0]))
+        or not all(scale)
+        or (kind in {"POINT", "TEXTURE"} and any(location))
+    ):
+        use.note("moves or stretches the sky; only its rotation is used")
+        scale = (1.0, 1.0, 1.0)
+    turn = Euler(rotation).to_matrix()
+    mirror = Matrix.Diagonal([np.sign(s) for s in scale])
+    return mirror @ turn.transposed() if kind == "TEXTURE" else turn @ mirror
+
+
+def _mapping(use: NodeUse) -> Matrix:
+    return _affine(use.node.vector_type, *_mapping_inputs(use))
+
+
+def _mapping_inputs(use: NodeUse) -> list[Any]:
+    """Location, rotation and scale; a Mapping of type Vector or Normal has no location."""
+    # late, since what an input receives may itself come from a texture
+    from .converters import read
+
+    values = []
+    for name, default in (("Location", 0.0), ("Rotation", 0.0), ("Scale", 1.0)):
+        used = use.has(name) and use.node.inputs[name].enabled
+        value = read(use, name) if used else constant(default)
+        if value.lookup is not None:
+            use.note(f"needs a constant as its '{name}'; the mean of the texture is used instead")
+        values.append(value.mean().factor.tolist())
+    return values
+
+
+def _own_mapping(mapping: Any) -> Matrix:
+    """An image node's own Mapping, a panel of its own. Cycles minds neither its limits nor the node's own colours."""
+    scale = Vector(mapping.scale)
+    if mapping.vector_type in {"TEXTURE", "NORMAL"}:  # kept invertible, as in Cycles
+        scale = Vector([s if abs(s) >= 1e-5 else np.copysign(1e-5, s) for s in scale])
+    kind, turn = mapping.vector_type, mapping.rotation
+    return _affine(kind, mapping.translation, turn, scale) @ _axes(mapping)
+
+
+def _axes(mapping: Any) -> Matrix:
+    """Which coordinate is taken for which."""
+    matrix = Matrix.Diagonal((0.0, 0.0, 0.0, 1.0))
+    for row, name in enumerate((mapping.mapping_x, mapping.mapping_y, mapping.mapping_z)):
+        if name != "NONE":
+            matrix[row]["XYZ".index(name)] = 1.0
+    return matrix
+
+
+def _affine(kind: str, location: Any, rotation: Any, scale: Any) -> Matrix:
+    if kind == "NORMAL":
+        raise NoMap("has a mapping of type Normal, which is for directions")
+    if kind == "VECTOR":
+        location = (0.0, 0.0, 0.0)
+    matrix = Matrix.LocRotScale(Vector(location), Euler(rotation), Vector(scale))
+    if kind != "TEXTURE":
+        return matrix
+    # by parts, since a scale of 0 gives 0 there
+    inverse = Matrix.Diagonal([1.0 / s if s else 0.0 for s in (*scale, 1.0)])
+    return (
+        inverse
+        @ Matrix.LocRotScale(Vector(), Euler(rotation), None).transposed()
+        @ Matrix.Translation(-Vector(location))
+    )
