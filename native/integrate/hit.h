@@ -142,7 +142,9 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     }
   const int endCosine = j;
   for (int m = 0; m < n[kLight]; ++m, ++j) {
-    light.set(j, world.emitters.sample(x.position, point(kLight, m)));
+    light.set(j,
+              world.emitters.sample(x.position, sampler.getChoice(plan.pixelKey, dimension + kLightPoint,
+                                                                  plan.firstPoint[kLight] + static_cast<uint32_t>(m))));
     const Vec3f wi = x.frame.toLocal(light[j].direction);
     batch.set(j, {T(wi.x), T(wi.y), T(wi.z)});
   }

@@ -23,9 +23,25 @@ constexpr uint32_t combine(uint32_t key, uint32_t value) { return mix(key ^ (val
 // Bits to [0, 1): a multiple of 2^-24, so that 1 - u is exact.
 constexpr float toUnit(uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
 
+// A point of which x has 53 bits: enough to choose one of millions by it and to place a point on what was chosen by the
+// rest. With the 24 bits of a float a choice among 2^21 would leave three for all that follows.
+struct ChoicePoint {
+  double x;
+  float y;
+};
+// 64 bits to [0, 1): a multiple of 2^-53.
+constexpr double toUnit(uint32_t high, uint32_t low) {
+  return static_cast<double>(uint64_t{high} << 21 | low >> 11) * 0x1p-53;
+}
+// What is left of a choice, as a coordinate.
+constexpr float toCoordinate(double u) { return std::min(static_cast<float>(u), 0x1.fffffep-1f); }
+
 // The point of a jittered cell; (cell + jitter) may round up to the next cell, but never to 1.
 constexpr float inCell(uint32_t cell, float jitter, uint32_t cells) {
   return std::min((static_cast<float>(cell) + jitter) / static_cast<float>(cells), 0x1.fffffep-1f);
+}
+constexpr double inCell(uint32_t cell, double jitter, uint32_t cells) {
+  return std::min((cell + jitter) / cells, 0x1.fffffffffffffp-1);
 }
 
 constexpr uint32_t reverseBits(uint32_t x) {
@@ -100,20 +116,12 @@ class Sampler {
   uint32_t pixelKey(uint32_t x, uint32_t y) const { return combine(combine(seed_, x), y); }
 
   Vec2f get2D(uint32_t pixelKey, uint32_t dimension, uint32_t index) const {
-    const uint32_t key = combine(pixelKey, dimension);
-    if (type_ == SamplerType::kSobol) {
-      // Burley 2020: shuffle the order, then scramble each coordinate of the (0,2)-sequence
-      const uint32_t i = reverseBits(owenScrambleReversed(reverseBits(index), key));
-      return {toUnit(reverseBits(owenScrambleReversed(i, mix(key ^ 0xa511e9b3u)))),
-              toUnit(reverseBits(owenScrambleReversed(sobol1Reversed(i), mix(key ^ 0x63d83595u))))};
-    }
-    const uint32_t h = combine(key, index);
-    const Vec2f jitter{toUnit(h), toUnit(mix(h ^ 0x68bc21ebu))};
-    if (type_ == SamplerType::kIndependent) return jitter;
-    // jittered cells in random order; a new order for each block
-    const uint32_t cells = columns_ * rows_;
-    const uint32_t cell = permute(index % cells, cells, combine(key ^ 0x02e5be93u, index / cells));
-    return {inCell(cell % columns_, jitter.x, columns_), inCell(cell / columns_, jitter.y, rows_)};
+    return get<Vec2f>(pixelKey, dimension, index);
+  }
+
+  // The same point, with more bits in x.
+  ChoicePoint getChoice(uint32_t pixelKey, uint32_t dimension, uint32_t index) const {
+    return get<ChoicePoint>(pixelKey, dimension, index);
   }
 
   float get1D(uint32_t pixelKey, uint32_t dimension, uint32_t index) const {
@@ -165,6 +173,31 @@ class Sampler {
   }
 
  private:
+  template <class Point>
+  Point get(uint32_t pixelKey, uint32_t dimension, uint32_t index) const {
+    using X = decltype(Point::x);
+    const uint32_t key = combine(pixelKey, dimension);
+    const auto x = [&](uint32_t bits) -> X {
+      if constexpr (sizeof(X) == sizeof(double))
+        return toUnit(bits, combine(mix(key + 0x7feb352du), index));  // bits of their own below the sequence's 32
+      else
+        return toUnit(bits);
+    };
+    if (type_ == SamplerType::kSobol) {
+      // Burley 2020: shuffle the order, then scramble each coordinate of the (0,2)-sequence
+      const uint32_t i = reverseBits(owenScrambleReversed(reverseBits(index), key));
+      return {x(reverseBits(owenScrambleReversed(i, mix(key ^ 0xa511e9b3u)))),
+              toUnit(reverseBits(owenScrambleReversed(sobol1Reversed(i), mix(key ^ 0x63d83595u))))};
+    }
+    const uint32_t h = combine(key, index);
+    const Point jitter{x(h), toUnit(mix(h ^ 0x68bc21ebu))};
+    if (type_ == SamplerType::kIndependent) return jitter;
+    // jittered cells in random order; a new order for each block
+    const uint32_t cells = columns_ * rows_;
+    const uint32_t cell = permute(index % cells, cells, combine(key ^ 0x02e5be93u, index / cells));
+    return {inCell(cell % columns_, jitter.x, columns_), inCell(cell / columns_, jitter.y, rows_)};
+  }
+
   SamplerType type_;
   uint32_t seed_;
   uint32_t block_, columns_ = 1, rows_ = 1;

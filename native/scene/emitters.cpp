@@ -13,20 +13,64 @@ namespace {
 constexpr float kFar = 3e38f;
 constexpr float kPif = kPi<float>;
 
-// Radiance of an emissive triangle for its selection: the mean of a few looked-up points.
-Rgb meanEmission(const Scene& scene, const Shape& s, uint32_t triangle) {
-  const ColorInput& e = scene.materials[static_cast<size_t>(s.material)].emission;
-  if (e.texture.texture < 0 || s.part->uvs.empty()) return e.value;
-  Rgb sum{0, 0, 0};
-  constexpr float w[4][2] = {{1 / 3.f, 1 / 3.f}, {0.1f, 0.1f}, {0.8f, 0.1f}, {0.1f, 0.8f}};
-  const uint32_t* i = s.indices + 3 * size_t{triangle};
-  for (const auto& b : w) {
-    const Vec2f a0 = s.part->uvs[i[0]], a1 = s.part->uvs[i[1]], a2 = s.part->uvs[i[2]];
-    const float c = 1 - b[0] - b[1];
-    sum += sampleRgb(scene, e.texture, {c * a0.x + b[0] * a1.x + b[1] * a2.x, c * a0.y + b[0] * a1.y + b[1] * a2.y});
+// Luminances of emissive triangles, for their selection.
+class TriangleLuminance {
+ public:
+  explicit TriangleLuminance(const Scene& scene) : scene_(scene), means_(scene.textures.size(), -1) {}
+
+  // Of a texture: the mean over a grid that is about as fine as the texels that the triangle covers. The grid may miss
+  // what shines between its points, and a triangle that shines must be aimed at: never less than a share of the image's
+  // own mean.
+  double of(const Shape& s, uint32_t triangle) {
+    const ColorInput& e = scene_.materials[static_cast<size_t>(s.material)].emission;
+    if (e.texture.texture < 0 || s.part->uvs.empty()) return luminance(e.value);
+    const uint32_t* i = s.indices + 3 * size_t{triangle};
+    const Vec2f a = s.part->uvs[i[0]], b = s.part->uvs[i[1]], c = s.part->uvs[i[2]];
+    const int n = divisions(e.texture, a, b, c);
+    const auto at = [&](float u, float v) {
+      const float w = 1 - u - v;
+      const Vec2f uv{w * a.x + u * b.x + v * c.x, w * a.y + u * b.y + v * c.y};
+      return double(std::max(0.0f, luminance(e.value * sampleRgb(scene_, e.texture, uv))));
+    };
+    double sum = 0;
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < n - y; ++x) {  // the middles of the n^2 triangles that it divides into
+        const float u = static_cast<float>(x), v = static_cast<float>(y), size = 1 / static_cast<float>(n);
+        sum += at((u + 1 / 3.f) * size, (v + 1 / 3.f) * size);
+        if (x < n - y - 1) sum += at((u + 2 / 3.f) * size, (v + 2 / 3.f) * size);
+      }
+    constexpr double kLeast = 0.02;
+    return std::max(sum / (n * n), kLeast * mean(e));
   }
-  return e.value * sum * 0.25f;
-}
+
+ private:
+  static constexpr float kMostDivisions = 16;
+
+  const Image& image(int texture) const {
+    return scene_.images[static_cast<size_t>(scene_.textures[static_cast<size_t>(texture)].image)];
+  }
+  int divisions(const TextureUse& use, Vec2f a, Vec2f b, Vec2f c) const {
+    const Image& texels = image(use.texture);
+    a = transformed(use, a), b = transformed(use, b), c = transformed(use, c);
+    const float area = 0.5f * std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
+    const float covered = area * static_cast<float>(texels.width) * static_cast<float>(texels.height);
+    return covered > 1 ? static_cast<int>(std::ceil(std::min(std::sqrt(covered), kMostDivisions))) : 1;
+  }
+  double mean(const ColorInput& e) {
+    double& known = means_[static_cast<size_t>(e.texture.texture)];
+    if (known < 0) {
+      const Image& texels = image(e.texture.texture);
+      const size_t count = static_cast<size_t>(texels.width) * static_cast<size_t>(texels.height);
+      known = 0;
+      for (size_t i = 0; i < count; ++i) known += double(std::max(0.0f, luminance(texelRgb(texels, i))));
+      known /= static_cast<double>(count);
+    }
+    return known * luminance(e.value);
+  }
+
+  const Scene& scene_;
+  std::vector<double> means_;  // luminance of each texture's image; < 0: not known yet
+};
 
 // The rectangle seen from a point, for sampling its solid angle (Urena, Fajardo and King 2013, "An area-preserving
 // parametrization for spherical rectangles").
@@ -104,11 +148,21 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const Environment& en
       }
       case LightType::kSun:
         l.center = normalize(light.toWorld.z);
-        l.kind = light.angle > 1e-5f ? Kind::kSunCone : Kind::kDeltaSun;
-        if (l.kind == Kind::kSunCone) {
-          const float s = std::sin(0.25f * light.angle);
+        l.kind = !(light.angle > 1e-5f) ? Kind::kDeltaSun : light.flat ? Kind::kSunDisk : Kind::kSunCone;
+        if (l.kind != Kind::kDeltaSun) {
+          const float half = 0.5f * light.angle, s = std::sin(0.5f * half);
           l.oneMinusCos = 2 * s * s;
-          const float sinHalf = std::sin(0.5f * light.angle);
+          if (light.flat) {
+            // integral over the disk of cos = 2 cos h/(1 + cos h) times that of 1: the irradiance, and the power
+            const float cosHalf = std::max(1e-6f, std::cos(half));
+            const float all = (1 + cosHalf) / (2 * cosHalf);
+            l.radius = std::sqrt(std::max(0.0f, 1 - cosHalf * cosHalf)) / cosHalf;
+            l.area = kPif * l.radius * l.radius;
+            l.emitted = light.emitted * (all / l.area);
+            w = intensity * double(all) * crossSection;
+            break;
+          }
+          const float sinHalf = std::sin(half);
           l.emitted = light.emitted / (kPif * sinHalf * sinHalf);
         }
         w = intensity * crossSection;
@@ -117,7 +171,7 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const Environment& en
     const auto index = static_cast<uint32_t>(lamps_.size());
     l.exclusive = l.kind == Kind::kDeltaPoint || l.kind == Kind::kDeltaSun || !l.shadow;
     (l.exclusive ? exclusive_ : shared_) = true;
-    if (!l.exclusive) (l.kind == Kind::kSunCone ? infinite_ : finite_).push_back(index);
+    if (!l.exclusive) (light.type == LightType::kSun ? infinite_ : finite_).push_back(index);
     lamps_.push_back(l);
     power.push_back(std::max(w, 0.0));
   }
@@ -131,6 +185,8 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const Environment& en
     shared_ |= environment.sampled();
   }
 
+  TriangleLuminance luminances(scene);
+  std::vector<std::vector<float>> ofShape(geometry.shapes.size());  // of its triangles, whatever its placements
   for (uint32_t p = 0; p < geometry.placements.size(); ++p) {
     Placement& placement = geometry.placements[p];
     placement.firstEmitter = static_cast<uint32_t>(emissive_.size());
@@ -140,10 +196,13 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const Environment& en
       if (!(maxComponent(scene.materials[static_cast<size_t>(shape.material)].emission.value) > 0)) continue;
       shape.emitterOffset = offset;
       offset += shape.triangles;
+      std::vector<float>& strength = ofShape[s];
+      for (uint32_t t = static_cast<uint32_t>(strength.size()); t < shape.triangles; ++t)
+        strength.push_back(static_cast<float>(luminances.of(shape, t)));
       for (uint32_t t = 0; t < shape.triangles; ++t) {
         const Vec3f a = geometry.corner(placement, shape, t, 0), b = geometry.corner(placement, shape, t, 1),
                     c = geometry.corner(placement, shape, t, 2);
-        const double w = 2 * kPif * 0.5 * length(cross(b - a, c - a)) * luminance(meanEmission(scene, shape, t));
+        const double w = 2 * kPif * 0.5 * length(cross(b - a, c - a)) * double(strength[t]);
         emissive_.push_back({p, s, t});
         power.push_back(std::isfinite(w) && w > 0 ? w : 0.0);
       }
@@ -220,9 +279,10 @@ float Emitters::pdfRectangle(const Lamp& lamp, Vec3f from, float t, float cosLig
   return q.solidAngle > 1e-4f ? 1 / q.solidAngle : 0;
 }
 
-LightSample Emitters::sample(Vec3f from, Vec2f u) const {
+LightSample Emitters::sample(Vec3f from, ChoicePoint point) const {
   LightSample s;
-  const uint32_t index = table_.sample(u.x);
+  const uint32_t index = table_.sample(point.x);
+  const Vec2f u{toCoordinate(point.x), point.y};
   const float choice = table_.probability(index);
   if (index >= lamps_.size()) {
     const Triangle& e = emissive_[index - lamps_.size()];
@@ -320,9 +380,20 @@ LightSample Emitters::sample(Vec3f from, Vec2f u) const {
       s.radiance = lamp.emitted;
       s.pdf = 1 / (2 * kPif * lamp.oneMinusCos);
       break;
+    case Kind::kSunDisk: {
+      const Framef f = Framef::around(lamp.center);
+      const Vec2f d = toDisk(u);
+      const Vec3f to = lamp.center + (f.x * d.x + f.y * d.y) * lamp.radius;
+      const float cos3 = 1 / (dot(to, to) * length(to));  // of the angle to the axis, cubed
+      s.distance = kFar;
+      s.direction = normalize(to);
+      s.radiance = lamp.emitted / cos3;
+      s.pdf = 1 / (lamp.area * cos3);
+      break;
+    }
     case Kind::kEnvironment:
       s.distance = kFar;
-      s.direction = environment_.sample(u);
+      s.direction = environment_.sample(point);
       s.radiance = environment_.radiance(s.direction);
       s.pdf = environment_.pdf(s.direction);
       break;
@@ -390,6 +461,15 @@ bool Emitters::meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax,
       if (!(0.5f * dot(apart, apart) <= lamp.oneMinusCos)) return false;
       pdf = 1 / (2 * kPif * lamp.oneMinusCos);
       hit.radiance = lamp.emitted;
+      break;
+    }
+    case Kind::kSunDisk: {
+      const Vec3f apart = d - lamp.center;
+      const float cosAxis = dot(d, lamp.center);
+      if (!(0.5f * dot(apart, apart) <= lamp.oneMinusCos) || !(cosAxis > 0)) return false;
+      const float cos3 = cosAxis * cosAxis * cosAxis;
+      pdf = 1 / (lamp.area * cos3);
+      hit.radiance = lamp.emitted / cos3;
       break;
     }
     case Kind::kEnvironment:

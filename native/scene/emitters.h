@@ -41,7 +41,7 @@ class Emitters {
   bool anyExclusive() const { return exclusive_; }
   uint64_t emissiveTriangles() const { return triangles_; }
 
-  LightSample sample(Vec3f from, Vec2f u) const;
+  LightSample sample(Vec3f from, ChoicePoint u) const;
 
   // Calls f(EmitterHit) for each light object that the ray meets before tMax, and, where the ray goes on for ever
   // (escaped), for the environment and suns.
@@ -60,16 +60,17 @@ class Emitters {
     kDeltaPoint,
     kDeltaSun,
     kSunCone,
+    kSunDisk,
     kEnvironment
   };
   struct Lamp {
     Kind kind;
-    Vec3f center{};          // or, for suns, the direction towards it
-    Vec3f halfX{}, halfY{};  // rectangle, ellipse: half axes
-    Vec3f normal{};          // rectangle, ellipse: unit
-    float area = 0, radius = 0;
-    float oneMinusCos = 0;  // sun: 1 - cos of the half angle
-    Rgb emitted{};          // radiance; point intensity; sun irradiance
+    Vec3f center{};              // or, for suns, the direction towards it
+    Vec3f halfX{}, halfY{};      // rectangle, ellipse: half axes
+    Vec3f normal{};              // rectangle, ellipse: unit
+    float area = 0, radius = 0;  // sun disk: of the disk at distance 1
+    float oneMinusCos = 0;       // sun: 1 - cos of the half angle
+    Rgb emitted{};               // radiance; point intensity; sun irradiance
     // angular profile
     float spreadTan = 0, spreadHalf = 0;  // spread < pi
     bool spread = false, spot = false, cosine = false;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "scene/glb_accessor.h"
@@ -76,6 +77,16 @@ Film readFilm(const Json& json) {
   return film;
 }
 
+// Directions are looked up after it, so that it must have an inverse; rows may be of any length.
+void readWorldMatrix(const Json& json, float (&matrix)[9]) {
+  json.numbers(matrix);
+  const Vec3f x{matrix[0], matrix[1], matrix[2]}, y{matrix[3], matrix[4], matrix[5]},
+      z{matrix[6], matrix[7], matrix[8]};
+  const float lengths = length(x) * length(y) * length(z), determinant = std::abs(dot(cross(x, y), z));
+  if (!(determinant > 1e-5f * lengths && determinant > 1e-20f && lengths < 1e20f))
+    json.fail("it has no inverse: directions of the sky cannot be told from it", "use a rotation, or leave it out");
+}
+
 Scene read(const Bytes& file, const std::filesystem::path& folder, const std::string& name) {
   const GlbChunks chunks = splitGlb(file, name);
   const JsonDocument document(name, chunks.json);
@@ -106,7 +117,7 @@ Scene read(const Bytes& file, const std::filesystem::path& folder, const std::st
       scene.world.radiance = world->colorOr("radiance", texture ? Rgb{1, 1, 1} : Rgb{0, 0, 0});
       if (texture && maxComponent(scene.world.radiance) > 0) {
         materials.useWorldTexture(texture->at("index"));
-        if (const auto matrix = texture->find("matrix")) matrix->numbers(scene.world.matrix);
+        if (const auto matrix = texture->find("matrix")) readWorldMatrix(*matrix, scene.world.matrix);
       }
     }
     const JsonArray notes = own->array("notes");

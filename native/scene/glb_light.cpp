@@ -57,6 +57,7 @@ std::optional<Light> readLight(const Json& json, const Affine& toWorld) {
     case LightType::kSun:
       light.emitted = color * json.at("irradiance").number(0);
       light.angle = json.numberOr("angle", 0, 0, 3.1416f);
+      light.flat = json.booleanOr("flat", false);
       break;
   }
   return emitting(json, light);

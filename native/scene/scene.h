@@ -128,6 +128,7 @@ struct Light {
   float radius = 0;
   bool facing = true;  // radius > 0: a disk that faces the shading point, else a true sphere
   float angle = 0;     // spot: full cone; sun: full angular diameter
+  bool flat = false;   // sun: a flat disk at distance 1, its radiance times 1/cos^3 of the angle to its axis
   float blend = 0;
   bool cosine = false;
   uint8_t visibility = kSeenByAll;

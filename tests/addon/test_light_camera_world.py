@@ -95,6 +95,7 @@ class Lights(SceneTest):
                 h = angle / 2
                 expected = 2 if NEW or h == 0 else 2 * 2 * (1 / math.cos(h) - 1) / math.tan(h) ** 2
                 self.assertAlmostEqual(self.only().emission, expected, 4)
+                self.assertEqual(self.only().flat, not NEW and h > 0)  # its radiance grows towards the rim
                 bpy.data.objects.remove(obj)
 
     def test_sun_as_wide_as_the_sky(self):

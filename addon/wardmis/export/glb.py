@@ -393,6 +393,8 @@ def _light(light: LightData) -> dict[str, Any]:
         result |= {"shape": light.shape, "size": list(light.size), "radiance": light.emission, "spread": light.spread}
     elif light.type == "sun":
         result |= {"irradiance": light.emission, "angle": light.angle}
+        if light.flat:
+            result["flat"] = True
     else:
         result |= {"intensity": light.emission, "radius": light.radius, "facing": light.facing}
         if light.type == "spot":

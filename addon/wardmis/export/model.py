@@ -142,6 +142,7 @@ class LightData:
     radius: float = 0.0  # point, spot
     facing: bool = True  # point, spot with a radius
     angle: float = 0.0  # spot: full cone; sun: full angular diameter
+    flat: bool = False  # sun: a flat disk, brighter towards its rim
     blend: float = 0.0  # spot
     cosine: bool = False  # spot
     shadow: bool = True

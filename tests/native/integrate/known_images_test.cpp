@@ -152,6 +152,27 @@ TEST(Irradiance, Sun) {
   }
 }
 
+// A flat disk at distance 1, as wide as may be: E = 2 S (1/cos h - 1)/tan^2 h facing it; on a plane that it lies along,
+// half of it below, S/(pi tan^2 h) integral of sin^2 a cos phi/cos^3 a = S (tan h/cos h - ln(tan h + 1/cos h))/(pi
+// tan^2 h).
+TEST(Irradiance, FlatSun) {
+  for (float degrees : {1.0f, 60.0f, 120.0f, 150.0f, 170.0f, 179.0f}) {
+    Scene scene = plane();
+    Light l;
+    l.type = LightType::kSun;
+    l.angle = degrees * kPi<float> / 180;
+    l.flat = true;
+    const double h = double(l.angle) / 2, tan2 = std::pow(std::tan(h), 2);
+    const auto facing = static_cast<float>(2 * (1 / std::cos(h) - 1) / tan2);
+    l.emitted = {facing, facing, facing};  // S = 1
+    scene.lights = {l};
+    EXPECT_NEAR(radiance(scene) * kPid / double(facing), 1, 2e-3) << degrees;
+    scene.lights[0].toWorld = lookingAtOrigin({1, 0, 0});
+    const double along = (std::tan(h) / std::cos(h) - std::log(std::tan(h) + 1 / std::cos(h))) / (kPid * tan2);
+    EXPECT_NEAR(radiance(scene) * kPid / along, 1, 5e-3) << degrees;
+  }
+}
+
 // Form factor of a rectangle parallel to the plane, corner over the point, sides a and b at height h.
 double cornerFactor(double a, double b, double h) {
   const double x = a / h, y = b / h;

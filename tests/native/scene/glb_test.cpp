@@ -757,6 +757,11 @@ TEST(Glb, RefusesHostileScenes) {
       {"film.filter.type: expected one of", extension({{"film", {{"resolution", {4, 4}}, {"filter", {{"type", "sinc"}}}}}})},
       {"world.radiance: expected three numbers >= 0", extension({{"world", {{"radiance", {-1, 0, 0}}}}})},
       {"world.texture.index: refers to textures[0]", extension({{"world", {{"texture", {{"index", 0}}}}}})},
+      {"world.texture.matrix: it has no inverse",
+       [extension](GlbBuilder& b) {
+         const int texture = rawTexture<float>(b, 1, 1, 1, {1});
+         extension({{"world", {{"texture", {{"index", texture}, {"matrix", {1, 0, 0, 0, 1, 0, 1, 1, 0}}}}}}})(b);
+       }},
       // instancing
       {"attributes: expected TRANSLATION, ROTATION or SCALE", instancing(json::object())},
       {"attributes.TRANSLATION: refers to accessors[9]", instancing({{"TRANSLATION", 9}})},
