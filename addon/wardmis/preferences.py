@@ -23,7 +23,7 @@ def renderer_path() -> Path:
 class WARDMIS_OT_test_renderer(bpy.types.Operator):
     bl_idname = "wardmis.test_renderer"
     bl_label = "Test"
-    bl_description = "Run the renderer and show its version"
+    bl_description = "Start the renderer and show its version, to see whether it works here"
 
     def execute(self, _context: Any) -> set[str]:
         try:

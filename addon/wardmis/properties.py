@@ -28,35 +28,68 @@ WEIGHTS = (
     (
         "auto",
         "Automatic",
-        "The weights that belong to the allocation: nonbalance for Variance and Standard Deviation, else balance",
+        "The weights that go with the allocation: Nonbalance for Variance and Standard Deviation, Balance for all others. "
+        "Others are for study",
     ),
-    ("balance", "Balance", "Balance heuristic: each technique's density times its share of the samples"),
-    ("nonbalance", "Nonbalance", "Each technique's density alone, whatever its share of the samples (Equation 14)"),
-    ("power", "Power", "Power heuristic with exponent 2"),
-    ("cutoff", "Cutoff", "Balance among the techniques whose density is at least a tenth of the largest"),
-    ("maximum", "Maximum", "The technique with the largest density counts alone"),
+    (
+        "balance",
+        "Balance",
+        "By each technique's density times its number of samples, as Veach and Guibas have it: never far from the best",
+    ),
+    (
+        "nonbalance",
+        "Nonbalance",
+        "By each technique's density alone, however many samples it has (Lopez Garces and Kong, Equation 14)",
+    ),
+    (
+        "power",
+        "Power",
+        "As Balance, but squared, as Veach and Guibas have it, too: helps where one technique is far better than the others",
+    ),
+    ("cutoff", "Cutoff", "As Balance, without the techniques whose density is below a tenth of the largest"),
+    ("maximum", "Maximum", "The technique with the largest density alone. For study"),
 )
 INTEGRANDS = (
-    ("split", "Split", "Specular and diffuse reflection are two integrals that share the light samples"),
-    ("joint", "Joint", "One integral of the whole reflection, sampled by all techniques"),
+    (
+        "split",
+        "Split",
+        "Gloss and diffuse reflection are estimated apart and share the samples of the light, as Lopez Garces and Kong do",
+    ),
+    (
+        "joint",
+        "Joint",
+        "Gloss and diffuse reflection are estimated as one, by all techniques. Second Moment can be very noisy so",
+    ),
 )
 INTEGRATORS = (
-    ("path", "Path", "All light, through paths of up to the given depth"),
-    ("direct", "Direct", "Direct light only"),
+    ("path", "Path", "All light, also that which comes by way of other surfaces, up to Max Depth of them"),
+    ("direct", "Direct", "Only light that comes straight from lamps, the sky and glowing surfaces: faster, and darker"),
 )
 STOPS = (
-    ("samples", "Samples", "Stop after a number of camera samples per pixel"),
-    ("seconds", "Seconds", "Stop after a time; the pilot is part of it"),
+    ("samples", "Samples", "Stop after a number of samples in each pixel, however long they take"),
+    (
+        "seconds",
+        "Seconds",
+        "Stop after a time, however many samples that are; it includes what the allocation measures first",
+    ),
 )
 SAMPLERS = (
-    ("sobol", "Sobol", "Owen-scrambled Sobol points: least noise"),
-    ("stratified", "Stratified", "One random point in each stratum"),
-    ("independent", "Independent", "Independent random points, as the theory assumes"),
+    ("sobol", "Sobol", "Sobol's points, scrambled as Owen has it, cover a pixel most evenly: the least noise"),
+    (
+        "stratified",
+        "Stratified",
+        "One random point in each cell of a grid: more noise than Sobol, less than Independent",
+    ),
+    (
+        "independent",
+        "Independent",
+        "Points that know nothing of each other: the most noise, and what theory assumes. For study",
+    ),
 )
 FILTERS = (
-    ("blackman-harris", "Blackman-Harris", "Smooth, as Cycles does by default"),
-    ("gaussian", "Gaussian", "Smooth"),
-    ("box", "Box", "The mean of the pixel's area"),
+    ("blackman-harris", "Blackman-Harris", "Smooth edges: the default of Cycles"),
+    ("gaussian", "Gaussian", "Smooth edges, a little softer"),
+    ("box", "Box", "Each sample counts for its own pixel alone: the sharpest, with jagged edges at high contrast"),
 )
 
 
@@ -68,21 +101,32 @@ class WARDMIS_PG_scene(bpy.types.PropertyGroup):
         default="second-moment",
     )
     weights: EnumProperty(
-        name="Weights", description="How the techniques' samples are weighted", items=WEIGHTS, default="auto"
+        name="Weights",
+        description="How samples of several techniques are combined that could have found the same light. It changes the noise, never the brightness",
+        items=WEIGHTS,
+        default="auto",
     )
     integrand: EnumProperty(
-        name="Integrand", description="What the techniques estimate together", items=INTEGRANDS, default="split"
+        name="Integrand",
+        description="Whether gloss and diffuse reflection are sampled apart. It changes the noise, never the brightness",
+        items=INTEGRANDS,
+        default="split",
     )
     integrator: EnumProperty(
-        name="Integrator", description="Which light is rendered", items=INTEGRATORS, default="path"
+        name="Integrator", description="Which of the light is rendered", items=INTEGRATORS, default="path"
     )
     stop_by: EnumProperty(name="Stop by", description="What ends the render", items=STOPS, default="samples")
     samples: IntProperty(
-        name="Samples", description="Camera samples per pixel", default=64, min=1, soft_max=4096, max=1 << 24
+        name="Samples",
+        description="Samples in each pixel. Four times as many halve the noise",
+        default=64,
+        min=1,
+        soft_max=4096,
+        max=1 << 24,
     )
     seconds: FloatProperty(
         name="Seconds",
-        description="Time for the render of one view layer and frame, pilot included",
+        description="Time for each view layer and frame",
         default=60.0,
         min=0.1,
         soft_max=3600.0,
@@ -91,14 +135,14 @@ class WARDMIS_PG_scene(bpy.types.PropertyGroup):
     )
     samples_per_hit: IntProperty(
         name="Samples per Hit",
-        description="Samples that the techniques share at the first hit of a camera sample",
+        description="Directions in which a sample of the camera looks for light where it first meets a surface; the allocation shares them among the techniques. More take longer and have less noise",
         default=3,
         min=1,
         max=256,
     )
     pilot_samples: IntProperty(
         name="Pilot Samples",
-        description="Camera samples per pixel, out of all, that measure the moments for the allocation",
+        description="Of the samples in each pixel, those that are shared equally and measured; the allocation of all others follows from them. More make its choice surer, and leave fewer to profit from it",
         default=4,
         min=1,
         soft_max=64,
@@ -106,7 +150,7 @@ class WARDMIS_PG_scene(bpy.types.PropertyGroup):
     )
     min_fraction: FloatProperty(
         name="Least Share",
-        description="No technique gets less than this share of the samples",
+        description="The least that any technique gets of the samples, as a fraction. More is safer where light is rare and bright, less lets the allocation go further",
         default=0.1,
         min=0.001,
         max=0.5,
@@ -115,20 +159,28 @@ class WARDMIS_PG_scene(bpy.types.PropertyGroup):
     )
     max_depth: IntProperty(
         name="Max Depth",
-        description="Surface hits of a path; 1 is direct light",
+        description="How many surfaces light may meet on its way to the camera; 1 is direct light alone",
         default=8,
         min=1,
         soft_max=64,
         max=1024,
     )
     sampler: EnumProperty(
-        name="Sampler", description="Where the random numbers come from", items=SAMPLERS, default="sobol"
+        name="Sampler",
+        description="How random numbers are spread over a pixel: the more evenly, the less noise",
+        items=SAMPLERS,
+        default="sobol",
     )
-    seed: IntProperty(name="Seed", description="The image depends on it, and never on the threads", default=0, min=0)
-    filter_type: EnumProperty(name="Filter", description="Pixel filter", items=FILTERS, default="blackman-harris")
+    seed: IntProperty(name="Seed", description="Another seed gives the same image with other noise", default=0, min=0)
+    filter_type: EnumProperty(
+        name="Filter",
+        description="How the samples near a pixel are weighed into it, as Cycles' Pixel Filter",
+        items=FILTERS,
+        default="blackman-harris",
+    )
     filter_width: FloatProperty(
         name="Width",
-        description="Width of the pixel filter, in pixels, as in Cycles",
+        description="Width of the pixel filter in pixels, as in Cycles: more is smoother, less is sharper",
         default=1.5,
         min=0.01,
         max=10.0,

@@ -94,6 +94,44 @@ class Settings(unittest.TestCase):
             self.assertIn("stop_by" if prop.identifier in {"samples", "seconds"} else f'"{prop.identifier}"', source)
 
 
+class Tooltips(unittest.TestCase):
+    """What a user reads to decide."""
+
+    # of operators: what Blender's file browser sets, and what a button sets for itself
+    INTERNAL = {
+        "rna_type",
+        "name",
+        "directory",
+        "filepath",
+        "filter_folder",
+        "filter_glob",
+        "check_existing",
+        "material",
+    }
+
+    def texts(self):
+        types_ = bpy.types
+        bases = types_.Operator, types_.PropertyGroup, types_.AddonPreferences, types_.ShaderNodeCustomGroup
+        ours = [c for base in bases for c in base.__subclasses__() if c.__module__.startswith("wardmis")]
+        for cls in ours:
+            if issubclass(cls, types_.Operator):
+                described = getattr(cls, "bl_description", "") or getattr(cls, "description", None)
+                yield cls.__name__, described if isinstance(described, str) else "one for each button"
+            own = getattr(cls, "__annotations__", {})
+            for prop in cls.bl_rna.properties:
+                if prop.identifier in self.INTERNAL or prop.identifier not in own:
+                    continue
+                yield f"{cls.__name__}.{prop.identifier}", prop.description
+                for item in getattr(prop, "enum_items", ()):
+                    yield f"{cls.__name__}.{prop.identifier} {item.identifier}", item.description
+
+    def test_there_is_one_for_everything_and_it_says_more_than_the_name(self):
+        found = dict(self.texts())
+        self.assertGreater(len(found), 80)
+        short = {name: text for name, text in found.items() if len(text.split()) < 3}
+        self.assertEqual(short, {})
+
+
 class Preferences(unittest.TestCase):
     def test_button_tests_the_renderer(self):
         with mock.patch.dict(os.environ, {"WARDMIS_BINARY": str(FAKE)}):

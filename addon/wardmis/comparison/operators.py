@@ -206,7 +206,7 @@ def show(folder: Path) -> None:
 class WARDMIS_OT_compare(bpy.types.Operator):
     bl_idname = "wardmis.compare"
     bl_label = "Compare"
-    bl_description = "Render the scene with every chosen configuration, and by Cycles, in the background, until it is known which is best"
+    bl_description = "Render the scene with every chosen configuration, and by Cycles, and say which has the least noise for its time. It runs in the background, and Blender can be used meanwhile"
 
     @classmethod
     def poll(cls, _context: Any) -> bool:
@@ -224,7 +224,7 @@ class WARDMIS_OT_compare(bpy.types.Operator):
 class WARDMIS_OT_compare_cancel(bpy.types.Operator):
     bl_idname = "wardmis.compare_cancel"
     bl_label = "Cancel"
-    bl_description = "Stop, with a report of what is done if that is enough for one; once more stops without"
+    bl_description = "Stop, and report what is done if that is enough for a report. Pressed again: stop at once, without one. Compare goes on from there"
 
     @classmethod
     def poll(cls, _context: Any) -> bool:
@@ -240,7 +240,7 @@ class WARDMIS_OT_compare_cancel(bpy.types.Operator):
 class WARDMIS_OT_compare_open(bpy.types.Operator):
     bl_idname = "wardmis.compare_open"
     bl_label = "Open Results..."
-    bl_description = "Show the results of an earlier comparison, from its folder"
+    bl_description = "Show the results of an earlier comparison: choose the folder that it has made"
 
     directory: StringProperty(subtype="DIR_PATH")
     filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN"})
@@ -262,7 +262,7 @@ class WARDMIS_OT_compare_open(bpy.types.Operator):
 class WARDMIS_OT_compare_view(bpy.types.Operator):
     bl_idname = "wardmis.compare_view"
     bl_label = "Show"
-    bl_description = "Show one of the comparison's images in the Image Editor"
+    bl_description = "Show this image of the comparison in the Image Editor"
 
     view: EnumProperty(
         items=[

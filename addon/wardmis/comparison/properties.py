@@ -23,9 +23,13 @@ STOPS = (
     ("seconds", "Time", "As many renders as a time allows; with Cycles, half of it is Cycles'"),
 )
 VIEWS = (
-    ("A", "A", "The first image"),
-    ("B", "B", "The second image"),
-    ("DIFFERENCE", "Difference", "Their relative difference in false colours, with its scale"),
+    ("A", "A", "The first image, chosen above as A"),
+    ("B", "B", "The second image, chosen above as B"),
+    (
+        "DIFFERENCE",
+        "Difference",
+        "How far A is from B at each pixel, relative to the brightness of B, in colours that a scale beside explains",
+    ),
 )
 
 _report: Report | None = None
@@ -36,19 +40,19 @@ _items: list[tuple[str, str, str]] = []  # Blender keeps no copy of the texts of
 class WARDMIS_PG_comparison(bpy.types.PropertyGroup):
     allocations: EnumProperty(
         name="Allocations",
-        description="The allocations to compare; all else is as in the panels above, the weights those that belong to each",
+        description="The allocations to compare, each with the weights that go with it; everything else is as set in the panels above",
         items=[(name, label, text, 1 << i) for i, (name, label, text) in enumerate(ALLOCATIONS)],
         default=set(DEFAULT_CONFIGURATIONS),
         options={"ENUM_FLAG"},
     )
     use_scene: BoolProperty(
         name="Scene's Settings",
-        description="The settings in the panels above as a configuration of their own, weights included",
+        description="Compare what is set in the panels above, its weights included, as one more configuration",
         default=False,
     )
     stop_by: EnumProperty(name="Stop by", description="What ends the comparison", items=STOPS, default="seconds")
     samples: IntProperty(
-        name="Samples", description="The largest number of camera samples per pixel", default=64, min=2, soft_max=4096
+        name="Samples", description="The largest number of samples in each pixel", default=64, min=2, soft_max=4096
     )
     seconds: FloatProperty(
         name="Seconds",
@@ -69,7 +73,7 @@ class WARDMIS_PG_comparison(bpy.types.PropertyGroup):
     )
     seeds: IntProperty(
         name="Seeds",
-        description="Independent renders of each configuration, which tell how sure its figures are",
+        description="How often each configuration is rendered, each time with other noise: what is better by chance is told from what is better",
         default=16,
         min=2,
         soft_max=64,
@@ -81,7 +85,12 @@ class WARDMIS_PG_comparison(bpy.types.PropertyGroup):
         default=True,
     )
     cycles_seeds: IntProperty(
-        name="Seeds", description="Independent renders of Cycles", default=16, min=2, soft_max=64, max=10000
+        name="Seeds",
+        description="How often Cycles renders, each time with other noise",
+        default=16,
+        min=2,
+        soft_max=64,
+        max=10000,
     )
     cycles_as_is: BoolProperty(
         name="As Set",
@@ -138,8 +147,18 @@ def _scaled(self: Any, context: Any) -> None:
 
 
 class WARDMIS_PG_results(bpy.types.PropertyGroup):
-    a: EnumProperty(name="A", description="The image WardMIS A", items=_image_items, update=_changed)
-    b: EnumProperty(name="B", description="The image WardMIS B", items=_image_items, update=_changed)
+    a: EnumProperty(
+        name="A",
+        description="The configuration whose result is the image WardMIS A",
+        items=_image_items,
+        update=_changed,
+    )
+    b: EnumProperty(
+        name="B",
+        description="The configuration whose result is the image WardMIS B, or the reference, which has the least noise",
+        items=_image_items,
+        update=_changed,
+    )
     top: FloatProperty(
         name="Scale",
         description="The relative difference of a pixel that has the brightest colour: 0.1 is a tenth of its brightness in B",
@@ -155,7 +174,12 @@ class WARDMIS_PG_results(bpy.types.PropertyGroup):
         default=True,
         update=_changed,
     )
-    view: EnumProperty(name="View", description="The image that the Image Editor shows", items=VIEWS, default="A")
+    view: EnumProperty(
+        name="View",
+        description="The image that the Image Editor shows: A, B or their difference",
+        items=VIEWS,
+        default="A",
+    )
     failure: StringProperty(description="Why the images could not be made")
 
 
