@@ -19,7 +19,7 @@ from sheet import Column, contact_sheet
 
 # The samples per pixel of their references: what leaves the whole demonstration below five minutes on two cores.
 SCENES = {"teapot": 512, "veach": 1024}
-ALLOCATIONS = ("equal", "variance", "second-moment")
+ALLOCATIONS = ("equal", "auto", "variance", "second-moment")
 REFERENCE_SEED = 1_000_003  # a stream of its own: nothing is compared with its own samples
 
 CYCLES_NOTE = (
@@ -159,6 +159,7 @@ def main() -> int:
     arguments.out.mkdir(parents=True, exist_ok=True)
     began = time.monotonic()
     rows: list[table.Row] = []
+    verdicts: list[str] = []
     notes = [
         f"{metrics.FORMULA}.",
         "Seconds: pilot and render, without export and loading; one run each, so small differences mean nothing.",
@@ -169,10 +170,11 @@ def main() -> int:
             effort = Effort(arguments.percentage, arguments.samples, reference_samples)
             scene_rows, note = demonstrate(scene, arguments.out, effort)
             rows += scene_rows
+            verdicts.append(table.verdict(scene_rows))
             notes.append(note)
     except blender.RenderFailed as error:
         sys.exit(f"demo: {error}")
-    notes.append(CYCLES_NOTE)
+    notes = [*verdicts, *notes, CYCLES_NOTE]
     (arguments.out / "table.md").write_text(table.markdown(rows, notes))
     (arguments.out / "table.json").write_text(table.as_json(rows, notes))
     print(table.plain(rows, notes))

@@ -71,5 +71,24 @@ def markdown(rows: list[Row], notes: list[str]) -> str:
     return "\n".join([head, rule, *body, "", *(f"- {note}" for note in notes), ""])
 
 
+# what single runs scatter by: of less nothing is said
+SCATTER = 1.25
+
+
+def verdict(rows: list[Row], baseline: str = "equal") -> str:
+    """Which allocation one scene's `rows` speak for: error times time against the baseline's, since time buys less error."""
+    cost = {r.allocation: r.rel_mse * r.seconds for r in rows if r.rel_mse is not None}
+    ratios = {name: value / cost[baseline] for name, value in cost.items() if name != baseline}
+    said = ", ".join(f"{name} {ratio:.2f}" for name, ratio in ratios.items())
+    best = min(ratios, key=lambda name: ratios[name])
+    scene = rows[0].scene
+    if ratios[best] * SCATTER < 1:
+        return f"{scene}: use {best}. Error times time, {baseline} being 1: {said}."
+    return (
+        f"{scene}: use {baseline}. Error times time, {baseline} being 1: {said}; single runs scatter by {SCATTER - 1:.0%}, so that none is better. "
+        "The weights let each technique count where it is good, whatever its share; what other shares gain here does not pay for the pilot that finds them."
+    )
+
+
 def as_json(rows: list[Row], notes: list[str]) -> str:
     return json.dumps({"rows": [asdict(row) for row in rows], "notes": notes}, indent=2, ensure_ascii=False) + "\n"

@@ -90,6 +90,14 @@ class Table(unittest.TestCase):
         self.assertEqual(head.index("seconds") + len("seconds"), first.index("3.25") + 4)
         self.assertEqual(first.index("equal"), second.index("Cycles"))
 
+    def test_verdict_is_what_more_than_chance_speaks_for(self):
+        def said(error, seconds):
+            other = table.Row("teapot", "auto", seconds, 0.5, 64, 1, 1, error, error)
+            return table.verdict([self.rows[0], other, self.rows[1]])
+
+        self.assertRegex(said(0.0123 / 2, 3.25), "^teapot: use auto. Error times time, equal being 1: auto 0.50.$")
+        self.assertRegex(said(0.0123, 3.25 * 0.9), "^teapot: use equal. .*: auto 0.90; .* none is better")
+
     def test_json_keeps_full_precision(self):
         read = json.loads(table.as_json(self.rows, ["n"]))
         self.assertEqual(read["rows"][0]["rel_mse"], 0.0123)
