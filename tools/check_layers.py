@@ -8,9 +8,18 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 # native/: the floors of the house, the top first.
-FLOORS = [{"cli"}, {"report", "study"}, {"integrate"}, {"scene"}, {"bsdf", "mis", "film", "oiio"}, {"image"}, {"math"}]
+FLOORS = [
+    {"cli"},
+    {"report", "study"},
+    {"integrate"},
+    {"scene"},
+    {"bsdf", "mis", "film", "oiio", "codecs"},
+    {"image"},
+    {"math"},
+]
 # Libraries that one place alone may know.
 LIBRARIES = {"embree": ["native/scene/accel"], "CLI": ["native/cli/"], "OpenImageIO": ["native/oiio/"]}
+LIBRARIES |= {library: ["native/codecs/"] for library in ("draco", "meshoptimizer", "webp")}
 
 # Python: Blender's modules, and where they may be imported.
 BLENDER = {"bpy", "bpy_extras", "mathutils", "gpu", "bl_ui", "nodeitems_utils"}

@@ -15,6 +15,7 @@
 #include "integrate/setup.h"
 #include "math/error.h"
 #include "report/page.h"
+#include "scene/defaults.h"
 #include "scene/glb.h"
 
 namespace wardmis {
@@ -31,7 +32,7 @@ struct Options {
   uint32_t maxSpp = 64;
   double budget = 0, referenceTime = 0, target = 0;
   int threads = 0;
-  bool watchStdin = false, check = false;
+  bool watchStdin = false, check = false, noDefaults = false;
 };
 
 // As a shell takes it.
@@ -74,8 +75,9 @@ int run(const Options& o, const std::string& command) {
 
   const std::atomic<Stop>& stop = stopOnSignals(o.watchStdin);
   ::wardmis::Reporter reporter(o.progress);
-  Scene scene = readGlb(o.scene);
+  Scene scene = readGlb(o.scene, o.noDefaults);
   if (!o.resolution.empty()) useResolution(scene, o.resolution);
+  if (!o.noDefaults) addDefaults(scene);
   const double start = wallSeconds();
   const BuiltScene built(scene, o.threads);
   if (o.check) {
@@ -175,6 +177,7 @@ Verb addConverge(CLI::App& app) {
   o->settings.add(app);
   app.add_option("--threads", o->threads, "0: all")->check(CLI::Range(0, 1024))->capture_default_str();
   app.add_option("--resolution", o->resolution, "WIDTHxHEIGHT instead of the scene's");
+  app.add_flag("--no-defaults", o->noDefaults, "as for render");
   app.add_option("--progress", o->progress, "bar, json or none")
       ->check(CLI::IsMember({"auto", "bar", "json", "none"}))
       ->capture_default_str();
@@ -186,7 +189,8 @@ Verb addConverge(CLI::App& app) {
       if (!option->get_lnames().empty() && option->get_lnames()[0] != "progress" &&
           option->get_lnames()[0] != "watch-stdin")
         for (const std::string& value : option->results())
-          command += fmt::format(" --{} {}", option->get_lnames()[0], shellQuoted(value));
+          command += fmt::format(" --{}{}", option->get_lnames()[0],
+                                 option->get_items_expected_max() > 0 ? " " + shellQuoted(value) : "");
     return run(*o, command);
   };
 }

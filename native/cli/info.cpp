@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/verbs.h"
+#include "scene/defaults.h"
 #include "scene/glb.h"
 #include "scene/needs.h"
 
@@ -27,7 +28,8 @@ Verb addInfo(CLI::App& app) {
   app.add_flag("--json", o->json, "machine output");
 
   return [o] {
-    const Scene scene = readGlb(o->scene);
+    Scene scene = readGlb(o->scene);
+    addDefaults(scene);
     requireMemoryFor(scene);
     Geometry geometry(scene);
     const Environment environment(scene);
@@ -41,7 +43,7 @@ Verb addInfo(CLI::App& app) {
                              {"scene", o->scene},
                              {"resolution", {film.width, film.height}},
                              {"border", {film.x0, film.y0, film.x1, film.y1}},
-                             {"camera", scene.camera ? nlohmann::json(scene.camera->name) : nlohmann::json(nullptr)},
+                             {"camera", scene.camera->name},
                              {"scene_counts",
                               {{"triangles", geometry.triangles},
                                {"instances", geometry.placements.size()},
@@ -61,7 +63,7 @@ Verb addInfo(CLI::App& app) {
     fmt::print("  image       {} x {}", film.width, film.height);
     if (film.x1 - film.x0 != film.width || film.y1 - film.y0 != film.height)
       fmt::print(", border {} x {}", film.x1 - film.x0, film.y1 - film.y0);
-    fmt::print("\n  camera      {}\n", scene.camera ? scene.camera->name : "none: the scene cannot be rendered");
+    fmt::print("\n  camera      {}\n", scene.camera->name);
     fmt::print("  geometry    {} triangles in {} objects of {} meshes\n", geometry.triangles,
                geometry.placements.size(), scene.meshes.size());
     if (scene.degenerateTriangles > 0)

@@ -19,6 +19,7 @@
 #include "integrate/passes.h"
 #include "math/clones.h"
 #include "math/error.h"
+#include "scene/defaults.h"
 #include "scene/glb.h"
 
 namespace wardmis {
@@ -33,7 +34,7 @@ struct Options {
   std::string scene, output, stats, progress = "auto", preview, layer = "ViewLayer", passes, filter = "scene",
                                     resolution;
   double previewInterval = 1;
-  bool watchStdin = false;
+  bool watchStdin = false, noDefaults = false;
   SettingOptions settings;
   // what ends it, and its seed
   uint32_t spp = 64;
@@ -158,8 +159,9 @@ int run(Options& o) {
 
   const std::atomic<Stop>& stopRequest = stopOnSignals(o.watchStdin);
   Reporter reporter(o.progress);
-  Scene scene = readGlb(o.scene);
+  Scene scene = readGlb(o.scene, o.noDefaults);
   if (!o.resolution.empty()) useResolution(scene, o.resolution);
+  if (!o.noDefaults) addDefaults(scene);
   if (o.filter != "scene") scene.film.filter = pick(o.filter, kFilters);
   const double readSeconds = since(start);
 
@@ -269,6 +271,7 @@ Verb addRender(CLI::App& app) {
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   app.add_option("--resolution", o->resolution, "WIDTHxHEIGHT instead of the scene's");
+  app.add_flag("--no-defaults", o->noDefaults, "refuse a scene without a camera, and add no sky to one without lights");
   app.add_option("--layer", o->layer, "first part of the EXR's channel names")
       ->check(notLonger(kLongestLayer))
       ->capture_default_str();

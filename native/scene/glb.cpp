@@ -33,9 +33,20 @@ void checkExtensions(const Json& root, LeftOut& leftOut) {
                                          "KHR_lights_punctual",
                                          "KHR_texture_transform",
                                          "KHR_materials_emissive_strength",
+                                         "KHR_materials_unlit",
                                          "KHR_mesh_quantization",
+                                         "KHR_draco_mesh_compression",
+                                         "EXT_meshopt_compression",
+                                         "KHR_meshopt_compression",
+                                         "EXT_texture_webp",
                                          "EXT_mesh_gpu_instancing"};
-  const auto isKnown = [&](std::string_view name) { return std::ranges::find(kKnown, name) != std::end(kKnown); };
+  // Of these the rest can be shown without; what is lost is said for each material and image.
+  constexpr std::string_view kOfSurfaces[] = {"KHR_materials_", "KHR_texture_", "EXT_texture_", "MSFT_texture_",
+                                              "GOOGLE_texture_"};
+  const auto isKnown = [&](std::string_view name) {
+    return std::ranges::find(kKnown, name) != std::end(kKnown) ||
+           std::ranges::any_of(kOfSurfaces, [&](std::string_view start) { return name.starts_with(start); });
+  };
   const JsonArray required = root.array("extensionsRequired"), used = root.array("extensionsUsed");
   for (size_t i = 0; i < required.size(); i++)
     if (!isKnown(required[i].string()))
@@ -43,7 +54,7 @@ void checkExtensions(const Json& root, LeftOut& leftOut) {
                                    cleaned(required[i].string())),
                        "export the scene without it");
   for (size_t i = 0; i < used.size(); i++)
-    if (!isKnown(used[i].string()))
+    if (std::ranges::find(kKnown, used[i].string()) == std::end(kKnown))
       leftOut.add("extension " + cleaned(used[i].string()), "this reader does not know it");
 }
 
@@ -87,11 +98,11 @@ void readWorldMatrix(const Json& json, float (&matrix)[9]) {
     json.fail("it has no inverse: directions of the sky cannot be told from it", "use a rotation, or leave it out");
 }
 
-Scene read(const Bytes& file, const std::filesystem::path& folder, const std::string& name) {
-  const GlbChunks chunks = splitGlb(file, name);
+Scene read(const Bytes& file, const std::filesystem::path& folder, const std::string& name, bool needsCamera) {
+  LeftOut leftOut;
+  const GlbChunks chunks = splitGlb(file, name, leftOut);
   const JsonDocument document(name, chunks.json);
   const Json root(document);
-  LeftOut leftOut;
   checkVersion(root);
   checkExtensions(root, leftOut);
 
@@ -103,6 +114,7 @@ Scene read(const Bytes& file, const std::filesystem::path& folder, const std::st
   Meshes meshes(root, accessors, buffers, materials, leftOut);
 
   if (const auto own = root.extension(kExtension)) {
+    scene.foreign = false;
     const Json version = own->at("version");
     if (version.integer(0, UINT64_MAX) != 1)
       version.failExpected("version 1 of WARDMIS_scene; use a newer renderer for newer files");
@@ -124,25 +136,28 @@ Scene read(const Bytes& file, const std::filesystem::path& folder, const std::st
     for (size_t i = 0; i < notes.size(); i++) scene.notes.emplace_back(notes[i].string());
   }
 
-  readNodes(root, accessors, buffers, meshes, leftOut, scene);
+  readNodes(root, accessors, buffers, meshes, leftOut, needsCamera, scene);
   if (root.array("animations").size() > 0) leftOut.add("animations", "one frame is rendered");
   meshes.finish(scene);
   materials.finish(scene);
   scene.leftOut = leftOut.list();
+  scene.files = buffers.files();
   return scene;
 }
 
 }  // namespace
 
-Scene readGlb(const std::filesystem::path& path) {
+Scene readGlb(const std::filesystem::path& path, bool needsCamera) {
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  return read(mapFile(path), folder, path.string());
+  Scene scene = read(mapFile(path), folder, path.string(), needsCamera);
+  scene.files.insert(scene.files.begin(), path);
+  return scene;
 }
 
 Scene readGlb(std::span<const std::byte> bytes, const std::filesystem::path& folder, const std::string& name) {
   // A copy: the scene's arrays are views, and outlive the caller's bytes.
   auto copy = std::make_shared<const std::vector<std::byte>>(bytes.begin(), bytes.end());
-  return read({*copy, copy}, folder, name);
+  return read({*copy, copy}, folder, name, false);
 }
 
 }  // namespace wardmis

@@ -13,7 +13,8 @@ namespace wardmis {
 // Reads and checks a scene. Geometry is a view into the mapped file where its layout allows. Images and UVs that no
 // material in use needs are not loaded (and listed in Scene::leftOut).
 // Throws Error(kFile) if the file cannot be opened, Error(kScene) if anything in it is wrong, naming the JSON path.
-Scene readGlb(const std::filesystem::path& path);
+// needsCamera: one without a camera is refused at once, before its meshes and images are read.
+Scene readGlb(const std::filesystem::path& path, bool needsCamera = false);
 
 // The same from memory (tests and fuzzing). `folder` is where relative URIs may point to; empty: nowhere.
 Scene readGlb(std::span<const std::byte> bytes, const std::filesystem::path& folder, const std::string& name);

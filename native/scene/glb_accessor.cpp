@@ -73,16 +73,18 @@ T element(const std::byte* from, float scale) {
   }
 }
 
+template <class T>
+bool hasNotFinite(const T& element) {
+  const auto bits = std::bit_cast<std::array<uint32_t, kComponents<T>>>(element);
+  bool any = false;
+  for (const uint32_t b : bits) any |= (b & 0x7F800000u) == 0x7F800000u;
+  return any;
+}
+
 // Index of the first element that is not finite, or the number of elements.
 template <class T>
 size_t firstNotFinite(std::span<const T> data) {
-  constexpr size_t n = kComponents<T>;
-  const auto bad = [&](size_t i) {
-    const auto bits = std::bit_cast<std::array<uint32_t, n>>(data[i]);
-    bool any = false;
-    for (const uint32_t b : bits) any |= (b & 0x7F800000u) == 0x7F800000u;
-    return any;
-  };
+  const auto bad = [&](size_t i) { return hasNotFinite(data[i]); };
   return tbb::parallel_reduce(
       tbb::blocked_range<size_t>(0, data.size(), kGrain), data.size(),
       [&](const tbb::blocked_range<size_t>& range, size_t first) {
@@ -136,12 +138,19 @@ Accessors::View Accessors::view(const Json& use, size_t i) {
     return v;
   }
   size_t stride = 0;
-  const Bytes bytes = buffers_.view(*bufferView, &stride);
+  uint64_t start = 0;
+  const Bytes bytes = buffers_.view(*bufferView, &stride, &start);
   if (stride != 0 && stride < v.elementSize())
     use.fail(fmt::format("accessor {} has elements of {} bytes, but its byteStride is {}", i, v.elementSize(), stride),
              kExportAgain);
   if (stride != 0) v.stride = stride;
   const uint64_t offset = json.integerOr("byteOffset", 0, 0, uint64_t(1) << 48);
+  if (const size_t size = sizeOf(v.type); (start + offset) % size != 0 || v.stride % size != 0)
+    use.fail(
+        fmt::format("accessor {} begins at byte {} of its buffer with one element every {} bytes: its components of "
+                    "{} bytes are not aligned",
+                    i, start + offset, v.stride, size),
+        kExportAgain);
   const uint64_t end = offset + (v.count - 1) * v.stride + v.elementSize();  // < 2^48 + 2^32 2^8 + 2^6
   if (end > bytes.size())
     use.fail(fmt::format("accessor {} ends at byte {}, but its bufferView has {} bytes", i, end, bytes.size()),
@@ -199,8 +208,27 @@ Array<T> Accessors::convert(const View& v) {
   return Array<T>::of(std::move(out));
 }
 
+size_t Accessors::count(const Json& use) const {
+  return accessors_[use.index(accessors_.size(), "accessors")].at("count").integer(1, UINT32_MAX - 1);
+}
+
+bool Accessors::hasData(const Json& use) const {
+  const Json json = accessors_[use.index(accessors_.size(), "accessors")];
+  return json.find("bufferView") || json.find("sparse");
+}
+
+void Accessors::checkAttribute(const Json& use, std::string_view name, size_t vertices) const {
+  const size_t i = use.index(accessors_.size(), "accessors");
+  const Json json = accessors_[i];
+  if (const size_t found = count(use); found != vertices)
+    use.fail(fmt::format("has {} elements, but POSITION has {}", found, vertices), kExportAgain);
+  const uint64_t type = json.at("componentType").integer(kI8, kF32);
+  if (!name.starts_with('_') && (type == kU32 || (name.starts_with("JOINTS_") && type == kF32)))
+    use.fail(fmt::format("accessor {} has componentType {}, which is not allowed here", i, type), kExportAgain);
+}
+
 template <class T>
-Array<T> Accessors::read(const Json& use) {
+Array<T> Accessors::read(const Json& use, size_t* mended) {
   const size_t i = use.index(accessors_.size(), "accessors");
   auto& cache = std::get<Cache<T>>(cache_);
   if (const auto found = cache.find(i); found != cache.end()) return found->second;
@@ -219,6 +247,12 @@ Array<T> Accessors::read(const Json& use) {
   Array<T> out = convert<T>(v);
   if constexpr (!kIsIndex<T>) {
     const size_t bad = firstNotFinite(out.data);
+    if (bad < out.size() && mended) {
+      std::vector<T> copy(out.data.begin(), out.data.end());
+      for (T& element : copy)
+        if (hasNotFinite(element)) element = T{}, ++*mended;
+      return Array<T>::of(std::move(copy));  // not for others, who may want to refuse it
+    }
     if (bad < out.size())
       use.fail(fmt::format("element {} of accessor {} is not finite", bad, i),
                "mend the object in the program that wrote the scene (NaN or infinite coordinates), and export again");
@@ -227,9 +261,9 @@ Array<T> Accessors::read(const Json& use) {
   return out;
 }
 
-template Array<Vec2f> Accessors::read(const Json&);
-template Array<Vec3f> Accessors::read(const Json&);
-template Array<Quaternion> Accessors::read(const Json&);
-template Array<uint32_t> Accessors::read(const Json&);
+template Array<Vec2f> Accessors::read(const Json&, size_t*);
+template Array<Vec3f> Accessors::read(const Json&, size_t*);
+template Array<Quaternion> Accessors::read(const Json&, size_t*);
+template Array<uint32_t> Accessors::read(const Json&, size_t*);
 
 }  // namespace wardmis

@@ -18,8 +18,15 @@ class Accessors {
   Accessors(const Json& root, Buffers& buffers, size_t fileBytes);
 
   // The accessor whose index stands at `use`. T: Vec2f, Vec3f, Quaternion (all elements are finite) or uint32_t.
+  // With `mended`, elements that are not finite become 0, and are counted.
   template <class T>
-  Array<T> read(const Json& use);
+  Array<T> read(const Json& use, size_t* mended = nullptr);
+
+  // Whether it may be an attribute of this name of a mesh of so many vertices, also if nobody reads it: what an
+  // exporter got wrong there it may have got wrong in the rest.
+  void checkAttribute(const Json& use, std::string_view name, size_t vertices) const;
+  size_t count(const Json& use) const;  // its number of elements
+  bool hasData(const Json& use) const;  // of its own, not only zeros
 
  private:
   struct View;

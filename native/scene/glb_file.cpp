@@ -7,9 +7,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <bit>
 #include <cerrno>
 #include <cstring>
+
+#include "image/codecs.h"
 
 namespace wardmis {
 namespace {
@@ -95,9 +98,9 @@ Bytes mapFile(const std::filesystem::path& path) {
           std::shared_ptr<const void>(memory, [size](const void* p) { munmap(const_cast<void*>(p), size); })};
 }
 
-GlbChunks splitGlb(const Bytes& file, const std::string& name) {
+GlbChunks splitGlb(const Bytes& whole, const std::string& name, LeftOut& leftOut) {
   const auto fail = [&](const std::string& what) { throw Error(ExitCode::kScene, name + ": " + what, kExportAgain); };
-  const std::string_view text(reinterpret_cast<const char*>(file.data.data()), file.size());
+  const std::string_view text(reinterpret_cast<const char*>(whole.data.data()), whole.size());
   if (text.empty()) fail("is empty");
   if (!text.starts_with("glTF")) {
     const size_t first = text.find_first_not_of("\xEF\xBB\xBF \t\r\n");
@@ -107,25 +110,41 @@ GlbChunks splitGlb(const Bytes& file, const std::string& name) {
   }
 
   constexpr uint32_t kJson = 0x4E4F534A, kBinary = 0x004E4942;
-  if (file.size() < 12) fail(fmt::format("GLB header: expected 12 bytes, found {}", file.size()));
-  if (word(file, 4) != 2) fail(fmt::format("GLB header: expected version 2, found {}", word(file, 4)));
-  if (word(file, 8) != file.size())
-    fail(fmt::format("GLB header: claims {} bytes, but the file has {}", word(file, 8), file.size()));
+  if (whole.size() < 12) fail(fmt::format("GLB header: expected 12 bytes, found {}", whole.size()));
+  if (word(whole, 4) != 2) fail(fmt::format("GLB header: expected version 2, found {}", word(whole, 4)));
+  const size_t claimed = word(whole, 8);
+  if (claimed > whole.size() || claimed < 12)
+    fail(fmt::format("GLB header: claims {} bytes, but the file has {}", claimed, whole.size()));
+  if (claimed < whole.size())
+    leftOut.add(fmt::format("the last {} bytes of the file", whole.size() - claimed),
+                "they lie behind the end that its header gives");
+  const Bytes file = whole.part(0, claimed);
   GlbChunks chunks;
   int number = 0;
   for (size_t at = 12; at < file.size(); number++) {
+    if (number > 0 && file.size() - at < 8) {
+      leftOut.add(fmt::format("{} bytes at the end of the file", file.size() - at), "they are no chunk");
+      break;
+    }
     if (file.size() - at < 8) fail(fmt::format("GLB chunk {}: its header at byte {} is cut off", number, at));
     const uint32_t length = word(file, at), type = word(file, at + 4);
     at += 8;
     if (length > file.size() - at)
       fail(fmt::format("GLB chunk {}: claims {} bytes, but {} are left in the file", number, length, file.size() - at));
-    if (length % 4 != 0) fail(fmt::format("GLB chunk {}: its length {} is not a multiple of 4", number, length));
     if ((type == kJson) != (number == 0))
       fail(fmt::format("GLB chunk {}: the first chunk, and only it, must be JSON", number));
     if (type == kBinary && number != 1) fail(fmt::format("GLB chunk {}: only the second chunk may be BIN", number));
     if (type == kJson) chunks.json = text.substr(at, length);
     if (type == kBinary) chunks.binary = file.part(at, length);
     at += length;
+    // Some writers pad a chunk without counting that, others count and do not pad: the next header tells.
+    if (length % 4 != 0) {
+      leftOut.add(fmt::format("padding of GLB chunk {}", number),
+                  fmt::format("its length {} is no multiple of 4; the file is read all the same", length));
+      const size_t padded = at + 4 - length % 4;
+      const auto isBinary = [&](size_t from) { return from + 8 <= file.size() && word(file, from + 4) == kBinary; };
+      if (!isBinary(at) && (isBinary(padded) || padded >= file.size())) at = std::min(padded, file.size());
+    }
   }
   if (number == 0) fail("GLB: has no JSON chunk");
   return chunks;
@@ -135,6 +154,7 @@ Buffers::Buffers(const Json& root, std::optional<Bytes> binary, std::filesystem:
     : buffers_(root.array("buffers")),
       views_(root.array("bufferViews")),
       loaded_(buffers_.size()),
+      unpacked_(views_.size()),
       binary_(std::move(binary)),
       folder_(std::move(folder)) {
   grow(fileBytes);
@@ -161,18 +181,60 @@ Bytes Buffers::buffer(const Json& use) {
   return *loaded_[i];
 }
 
-Bytes Buffers::view(const Json& use, size_t* stride) {
+Bytes Buffers::view(const Json& use, size_t* stride, uint64_t* offset) {
   const size_t i = use.index(views_.size(), "bufferViews");
   const Json json = views_[i];
+  if (stride) *stride = json.integerOr("byteStride", 0, 4, 252);
+  for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"})
+    if (const auto extension = json.extension(name)) {
+      if (offset) *offset = 0;
+      return decompressed(use, *extension, i);
+    }
+  if (offset) *offset = json.integerOr("byteOffset", 0, 0, UINT64_MAX);
+  return part(use, json, i);
+}
+
+// What `json`, a buffer view or the compressed form of one, names of its buffer.
+Bytes Buffers::part(const Json& use, const Json& json, size_t view) {
   const Bytes bytes = buffer(json.at("buffer"));
   const uint64_t offset = json.integerOr("byteOffset", 0, 0, UINT64_MAX);
   const uint64_t length = json.at("byteLength").integer(1, UINT64_MAX);
   if (offset > bytes.size() || length > bytes.size() - offset)
-    use.fail(fmt::format("bufferView {} has {} bytes from byte {} on, but its buffer has {} bytes", i, length, offset,
-                         bytes.size()),
+    use.fail(fmt::format("bufferView {} has {} bytes from byte {} on, but its buffer has {} bytes", view, length,
+                         offset, bytes.size()),
              kExportAgain);
-  if (stride) *stride = json.integerOr("byteStride", 0, 4, 252);
   return bytes.part(offset, length);
+}
+
+// EXT_meshopt_compression; without the library what the file holds for such readers, if it does.
+Bytes Buffers::decompressed(const Json& use, const Json& extension, size_t i) {
+  if (unpacked_[i]) return *unpacked_[i];
+  if (!codecs().meshopt) {
+    const Json fallback = buffers_[views_[i].at("buffer").index(buffers_.size(), "buffers")];
+    if (fallback.find("uri") || (binary_ && views_[i].at("buffer").integer(0, UINT64_MAX) == 0))
+      return part(use, views_[i], i);
+    use.fail(fmt::format("bufferView {} is compressed by meshoptimizer, and {}", i, codecMissing("meshoptimizer")),
+             "build the command where it is installed (libmeshoptimizer-dev), or export without compression");
+  }
+  constexpr std::pair<std::string_view, MeshoptMode> kModes[] = {
+      {"ATTRIBUTES", kMeshoptAttributes}, {"TRIANGLES", kMeshoptTriangles}, {"INDICES", kMeshoptIndices}};
+  constexpr std::pair<std::string_view, MeshoptFilter> kFilters[] = {{"NONE", kMeshoptNone},
+                                                                     {"OCTAHEDRAL", kMeshoptOctahedral},
+                                                                     {"QUATERNION", kMeshoptQuaternion},
+                                                                     {"EXPONENTIAL", kMeshoptExponential}};
+  const Bytes packed = part(use, extension, i);
+  const MeshoptMode mode = extension.at("mode").choice(kModes);
+  const auto filter = extension.find("filter");
+  const uint64_t count = extension.at("count").integer(1, UINT32_MAX),
+                 stride = extension.at("byteStride").integer(1, 256);
+  budget.grow(packed.size());  // it packs further than anything else
+  budget.charge(count * stride, extension);
+  auto out = std::make_shared<std::vector<std::byte>>(count * stride);
+  if (const char* wrong = codecs().meshopt(mode, filter ? filter->choice(kFilters) : kMeshoptNone, packed.data.data(),
+                                           packed.size(), count, stride, out->data()))
+    extension.fail(fmt::format("what meshoptimizer has compressed {}", wrong), kExportAgain);
+  unpacked_[i] = Bytes{*out, out};
+  return *unpacked_[i];
 }
 
 Bytes Buffers::uri(const Json& json) {
@@ -198,6 +260,7 @@ Bytes Buffers::uri(const Json& json) {
   if (folder_.empty() || path.is_absolute() || relative->find_first_of(":\\") != std::string::npos) refuse();
   for (const auto& part : path)
     if (part == "..") refuse();
+  if (std::find(files_.begin(), files_.end(), folder_ / path) == files_.end()) files_.push_back(folder_ / path);
   // Symbolic links may not lead out of the folder either.
   std::error_code error;
   const auto folder = std::filesystem::canonical(folder_, error);

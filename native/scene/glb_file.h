@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scene/glb_leftout.h"
 #include "scene/json.h"
 
 namespace wardmis {
@@ -32,8 +33,8 @@ struct GlbChunks {
   std::string_view json;
   std::optional<Bytes> binary;
 };
-// A .glb file's chunks, or the text of a .gltf file.
-GlbChunks splitGlb(const Bytes& file, const std::string& name);
+// A .glb file's chunks, or the text of a .gltf file. What is wrong with the container, but does no harm, is left out.
+GlbChunks splitGlb(const Bytes& file, const std::string& name, LeftOut& leftOut);
 
 // A scene must not make the reader allocate or read out of proportion to its own size, whatever its counts claim.
 class Budget {
@@ -54,10 +55,14 @@ class Buffers {
  public:
   Buffers(const Json& root, std::optional<Bytes> binary, std::filesystem::path folder, size_t fileBytes);
 
-  // The bytes of the buffer view whose index stands at `use`.
-  Bytes view(const Json& use, size_t* stride = nullptr);
+  // The bytes of the buffer view whose index stands at `use`, decompressed; its stride (0: none), and its offset in the
+  // buffer.
+  Bytes view(const Json& use, size_t* stride = nullptr, uint64_t* offset = nullptr);
   // What a `uri` stands for: data, or a file in the scene's folder or below.
   Bytes uri(const Json& uri);
+
+  // The files that `uri`s have led to so far, in order, each once; also those that could not be read.
+  const std::vector<std::filesystem::path>& files() const { return files_; }
 
   Budget budget;
   // Of the scene and the files that it has made us read so far.
@@ -66,11 +71,15 @@ class Buffers {
  private:
   void grow(uint64_t bytes);
   Bytes buffer(const Json& use);
+  Bytes part(const Json& use, const Json& json, size_t view);
+  Bytes decompressed(const Json& use, const Json& extension, size_t view);
 
   JsonArray buffers_, views_;
-  std::vector<std::optional<Bytes>> loaded_;  // by buffer, when first used
+  std::vector<std::optional<Bytes>> loaded_;    // by buffer, when first used
+  std::vector<std::optional<Bytes>> unpacked_;  // by buffer view, of those that are compressed
   std::optional<Bytes> binary_;
   std::filesystem::path folder_;
+  std::vector<std::filesystem::path> files_;
   uint64_t fileBytes_ = 0;
 };
 

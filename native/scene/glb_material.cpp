@@ -13,6 +13,7 @@ namespace wardmis {
 namespace {
 
 constexpr const char* kExtension = "WARDMIS_scene";
+constexpr uint64_t kMostSets = 1 << 16;  // of texture coordinates
 
 constexpr std::pair<std::string_view, WardVariant> kVariants[] = {
     {"ward", WardVariant::kWard}, {"ward-dur", WardVariant::kWardDur}, {"ward-gmd", WardVariant::kWardGmd}};
@@ -47,10 +48,12 @@ Materials::Materials(const Json& root, Buffers& buffers, LeftOut& leftOut)
 
 int Materials::use(const Json& primitive) {
   const auto add = [&](Material material) {
+    uvSets_.push_back(set_);
     read_.materials.push_back(std::move(material));
     return static_cast<int>(read_.materials.size() - 1);
   };
   const auto index = primitive.find("material");
+  set_ = -1;
   if (!index) {
     if (defaultMaterial_ < 0) {
       Material grey;
@@ -74,10 +77,15 @@ int Materials::use(const Json& primitive) {
   return entry->second;
 }
 
-bool Materials::needsUvs(int index) const {
+int Materials::uvSet(int index) const {
   const Material& m = read_.materials[index];
-  const bool baked = std::any_of(bakes_.begin(), bakes_.end(), [&](const Bake& b) { return b.material == index; });
-  return m.hasTextures() || baked || (m.alphaX.value != m.alphaY.value && maxComponent(m.specular.value) > 0);
+  if (uvSets_[index] >= 0) return uvSets_[index];
+  return m.alphaX.value != m.alphaY.value && maxComponent(m.specular.value) > 0 ? 0 : -1;
+}
+
+std::string Materials::described(int index) const {
+  const std::string& name = read_.materials[index].name;
+  return name.empty() ? "a material without a name" : "material '" + name + "'";
 }
 
 void Materials::useWorldTexture(const Json& index) {
@@ -117,6 +125,7 @@ void Materials::readAlpha(const Json& extension, std::string_view key, ScalarInp
 
 TextureUse Materials::wardTexture(const Json& json, bool isColor) {
   TextureUse use;
+  set_ = 0;
   use.texture = texture(json.at("index"), isColor);
   use.channel = static_cast<int>(json.integerOr("channel", 0, 0, 3));
   if (const auto transform = json.find("transform")) transform->numbers(use.transform);
@@ -124,6 +133,15 @@ TextureUse Materials::wardTexture(const Json& json, bool isColor) {
 }
 
 Material Materials::core(const Json& json) {
+  constexpr std::string_view kKnown[] = {"KHR_materials_emissive_strength", "KHR_materials_unlit"};
+  if (const auto extensions = json.find("extensions"))
+    extensions->forEachMember([&](std::string_view name, const Json&) {
+      if (std::ranges::find(kKnown, name) == std::end(kKnown))
+        leftOut_.add(cleaned(name) + " of " + user_, name == "KHR_materials_transmission"
+                                                         ? "nothing is transparent: it is rendered opaque"
+                                                         : "it is rendered without");
+    });
+  const bool unlit = json.extension("KHR_materials_unlit").has_value();
   Material m;
   Rgb base{1, 1, 1};
   float metallic = 1, roughness = 1;
@@ -137,7 +155,17 @@ Material Materials::core(const Json& json) {
     metallic = pbr->numberOr("metallicFactor", 1, 0, 1);
     roughness = pbr->numberOr("roughnessFactor", 1, 0, 1);
     if (maxComponent(base) > 0) baseTexture = coreTexture(*pbr, "baseColorTexture", true);
-    if (metallic > 0 || roughness > 0) roughnessTexture = coreTexture(*pbr, "metallicRoughnessTexture", false);
+    if (!unlit && (metallic > 0 || roughness > 0))
+      roughnessTexture = coreTexture(*pbr, "metallicRoughnessTexture", false);
+  }
+  if (json.stringOr("alphaMode", "OPAQUE") != "OPAQUE") leftOut_.add("transparency of " + user_, "surfaces are opaque");
+  if (unlit) {  // seen as it is: what shines so, and reflects nothing
+    m.unlit = true;
+    m.emission.value = base;
+    if (baseTexture) m.emission.texture = *baseTexture;
+    leftOut_.add("KHR_materials_unlit of " + user_,
+                 "it is rendered as light of that colour, which falls on the rest too");
+    return m;
   }
   const CoreColors colors = coreColors(base, metallic);
   m.diffuse.value = colors.diffuse;
@@ -168,7 +196,6 @@ Material Materials::core(const Json& json) {
 
   for (const char* key : {"normalTexture", "occlusionTexture"})
     if (json.find(key)) leftOut_.add(std::string(key), "not part of the renderer's materials");
-  if (json.stringOr("alphaMode", "OPAQUE") != "OPAQUE") leftOut_.add("transparency of " + user_, "surfaces are opaque");
   return m;
 }
 
@@ -176,11 +203,13 @@ std::optional<TextureUse> Materials::coreTexture(const Json& parent, std::string
   const auto json = parent.find(key);
   if (!json) return std::nullopt;
   const auto extension = json->extension("KHR_texture_transform");
-  uint64_t set = json->integerOr("texCoord", 0, 0, UINT32_MAX);
-  if (extension) set = extension->integerOr("texCoord", set, 0, UINT32_MAX);
-  if (set != 0) {
-    leftOut_.add(fmt::format("{} of {}", key, user_),
-                 fmt::format("it needs TEXCOORD_{}, only TEXCOORD_0 is read", set));
+  uint64_t set = json->integerOr("texCoord", 0, 0, kMostSets);
+  if (extension) set = extension->integerOr("texCoord", set, 0, kMostSets);
+  if (set_ < 0) set_ = static_cast<int>(set);
+  if (set != static_cast<uint64_t>(set_)) {
+    leftOut_.add(
+        fmt::format("{} of {}", key, user_),
+        fmt::format("it needs TEXCOORD_{}, the material's other textures TEXCOORD_{}: one of them is read", set, set_));
     return std::nullopt;
   }
   TextureUse use;
@@ -227,13 +256,29 @@ int Materials::texture(const Json& index, bool isColor) {
     if (const auto filter = extension->find("filter")) texture.filter = filter->choice(kFilters);
     if (const auto wrap = extension->find("wrap")) texture.wrapU = texture.wrapV = wrap->choice(kExtensionWraps);
   }
-  texture.image = image(json.at("source"), isColor);
+  if (const auto found = source(json)) {
+    texture.image = image(*found, isColor);
+  } else {
+    texture.image = static_cast<int>(pending_.size());
+    pending_.push_back({json, Encoding{}, user_, "has no image"});
+  }
   read_.textures.push_back(texture);
   return entry->second = static_cast<int>(read_.textures.size() - 1);
 }
 
-int Materials::image(const Json& index, bool isColor) {
-  const size_t i = index.index(images_.size(), "images");
+// The image of a texture: core glTF's, which every reader knows, else that of an extension.
+std::optional<size_t> Materials::source(const Json& texture) {
+  std::optional<Json> found = texture.find("source");
+  if (const auto extension = texture.extension("EXT_texture_webp"); extension && !found)
+    found = extension->find("source");
+  if (const auto extensions = texture.find("extensions"))
+    extensions->forEachMember([&](std::string_view, const Json& extension) {
+      if (!found && extension.isObject()) found = extension.find("source");
+    });
+  return found ? std::optional(found->index(images_.size(), "images")) : std::nullopt;
+}
+
+int Materials::image(size_t i, bool isColor) {
   const Json json = images_[i];
   Encoding encoding{isColor ? ColorSpace::kAuto : ColorSpace::kLinear};
   if (const auto extension = json.extension(kExtension)) {
@@ -246,18 +291,22 @@ int Materials::image(const Json& index, bool isColor) {
   return entry->second;
 }
 
-Bytes Materials::fetch(const PendingImage& pending) {
+// What cannot be had is no reason not to render the rest.
+Bytes Materials::fetch(PendingImage& pending) {
+  if (!pending.missing.empty()) return {};
   const auto uri = pending.json.find("uri"), view = pending.json.find("bufferView");
   try {
-    if (bool(uri) == bool(view)) pending.json.fail("expected either uri or bufferView");
-    return uri ? buffers_.uri(*uri) : buffers_.view(*view);
+    if (bool(uri) != bool(view)) return uri ? buffers_.uri(*uri) : buffers_.view(*view);
+    pending.missing = "has neither uri nor bufferView, or both";
   } catch (const Error& e) {
-    throw Error(e.code, fmt::format("{} (needed by {})", e.what(), pending.neededBy), e.hint);
+    pending.missing = "is not there: " + std::string(e.what());
   }
+  return {};
 }
 
 DecodedImage Materials::decode(const PendingImage& pending, const Bytes& bytes, ImageBudget& budget) {
   const Json& json = pending.json;
+  if (!pending.missing.empty()) return lostImage(pending.missing);
   try {
     if (json.stringOr("mimeType", "") != "application/x-wardmis-pixels")
       return decodeImage(bytes.data, pending.encoding, budget);
@@ -341,7 +390,7 @@ int Materials::addImage(Image image, const Texture& like) {
 
 void Materials::finish(Scene& scene) {
   std::vector<Bytes> bytes;
-  for (const PendingImage& p : pending_) bytes.push_back(fetch(p));
+  for (PendingImage& p : pending_) bytes.push_back(fetch(p));
   ImageBudget budget(buffers_.fileBytes());
   std::vector<DecodedImage> decoded(pending_.size());
   tbb::parallel_for(size_t(0), decoded.size(), [&](size_t i) { decoded[i] = decode(pending_[i], bytes[i], budget); });

@@ -19,8 +19,9 @@ class Materials {
 
   // The index in Scene::materials of a primitive's material, read when it is first used.
   int use(const Json& primitive);
-  // Whether the material needs texture coordinates: for textures, or as the direction of its anisotropy.
-  bool needsUvs(int material) const;
+  // Which TEXCOORD_n the material needs, for textures or as the direction of its anisotropy; -1: none.
+  int uvSet(int material) const;
+  std::string described(int material) const;  // for messages
   // The world's texture; its index in Scene::textures is known after finish().
   void useWorldTexture(const Json& index);
 
@@ -37,9 +38,10 @@ class Materials {
     TextureUse baseTexture, roughnessTexture;
   };
   struct PendingImage {
-    Json json;
+    Json json;  // of the image, or of a texture that has none
     Encoding encoding;
     std::string neededBy;
+    std::string missing = {};  // why there is nothing to decode
   };
 
   Material ward(const Json& extension);
@@ -49,8 +51,9 @@ class Materials {
   TextureUse wardTexture(const Json& json, bool isColor);
   std::optional<TextureUse> coreTexture(const Json& parent, std::string_view key, bool isColor);
   int texture(const Json& index, bool isColor);
-  int image(const Json& index, bool isColor);
-  Bytes fetch(const PendingImage& pending);
+  int image(size_t image, bool isColor);
+  std::optional<size_t> source(const Json& texture);
+  Bytes fetch(PendingImage& pending);
   static DecodedImage decode(const PendingImage& pending, const Bytes& bytes, ImageBudget& budget);
   void bake(const Bake& bake, ImageBudget& budget);
   int addImage(Image image, const Texture& like);
@@ -59,8 +62,10 @@ class Materials {
   Buffers& buffers_;
   LeftOut& leftOut_;
   std::string user_;  // whose textures are being read, for messages
+  int set_ = -1;      // the TEXCOORD_n of the first of them
 
-  Scene read_;  // materials as read, with textures that finish() may combine or drop
+  Scene read_;               // materials as read, with textures that finish() may combine or drop
+  std::vector<int> uvSets_;  // of read_.materials: that of the textures, -1 without any
   std::unordered_map<size_t, int> materialOf_;
   int defaultMaterial_ = -1;
   std::map<std::pair<size_t, bool>, int> textureOf_;  // by index in the file, and whether it is a colour

@@ -11,6 +11,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "scene/glb_draco.h"
+
 namespace wardmis {
 namespace {
 
@@ -78,75 +80,108 @@ Mesh Meshes::read(const Json& json) {
       leftOut_.add("points and lines of mesh " + json.described(), "only triangles are rendered");
       continue;
     }
+    const auto attributes = primitive.find("attributes");
+    const auto position = attributes ? attributes->find("POSITION") : std::nullopt;
+    if (!position) {
+      leftOut_.add("a primitive of mesh " + json.described(), "it has no POSITION");
+      continue;
+    }
     if (primitive.find("targets"))
       leftOut_.add("morph targets of mesh " + json.described(), "the base shape is rendered");
-    const Json attributes = primitive.at("attributes");
-    attributes.forEachMember([&](std::string_view key, const Json&) {
-      if (key != "POSITION" && key != "NORMAL" && key != "TEXCOORD_0")
+
+    const int material = materials_.use(primitive), set = materials_.uvSet(material);
+    const std::string uvName = set < 0 ? "" : fmt::format("TEXCOORD_{}", set);
+    const auto normal = attributes->find("NORMAL"), uv = set < 0 ? std::nullopt : attributes->find(uvName);
+    if (set >= 0 && !uv)
+      leftOut_.add("textures and direction of anisotropy on mesh " + json.described(),
+                   fmt::format("it has no {}: textures are looked up at (0, 0)", uvName));
+    const auto draco = primitive.extension("KHR_draco_mesh_compression");
+    const size_t vertices = draco ? 0 : accessors_.count(*position);
+    attributes->forEachMember([&](std::string_view key, const Json& use) {
+      if (!draco && key != "POSITION") accessors_.checkAttribute(use, key, vertices);
+      if (key == "COLOR_0")
+        leftOut_.add("vertex colours of mesh " + json.described() + " with " + materials_.described(material),
+                     "the renderer does not use them");
+      else if (key.starts_with("TEXCOORD_") && set < 0)
+        leftOut_.add("vertex attribute " + cleaned(key), "no texture and no anisotropy needs it there");
+      else if (key != "POSITION" && key != "NORMAL" && key != uvName)
         leftOut_.add("vertex attribute " + cleaned(key), "the renderer does not use it");
     });
 
-    const int material = materials_.use(primitive);
-    const Json position = attributes.at("POSITION");
-    const auto normal = attributes.find("NORMAL"), uv = attributes.find("TEXCOORD_0");
-    const bool needsUvs = materials_.needsUvs(material);
-    if (needsUvs && !uv)
-      leftOut_.add("textures and direction of anisotropy on mesh " + json.described(),
-                   "it has no TEXCOORD_0: textures are looked up at (0, 0)");
-    if (uv && !needsUvs) leftOut_.add("vertex attribute TEXCOORD_0", "no texture and no anisotropy needs it there");
+    const auto mended = [&](size_t count) {
+      if (count > 0)
+        leftOut_.add(fmt::format("{} normals or texture coordinates of mesh {}", count, json.described()),
+                     "they are not finite: 0 is used, and the face's own normal where all are so");
+    };
+    if (draco && (hasDraco() || !accessors_.hasData(*position))) {
+      DracoPrimitive decoded = readDraco(*draco, uvName, buffers_);
+      mended(decoded.mended);
+      MeshPart part{decoded.positions, decoded.normals, turned(decoded.uvs, *position), {}};
+      Array<uint32_t> indices = triangles(primitive, part.positions, *position, &decoded.indices);
+      if (indices.empty()) continue;
+      part.primitives.push_back({material, std::move(indices)});
+      mesh.parts.push_back(std::move(part));
+      continue;
+    }
 
     constexpr size_t kNone = SIZE_MAX, kAny = SIZE_MAX;
     const auto key =
-        std::make_tuple(position.index(kAny, "accessors"), normal ? normal->index(kAny, "accessors") : kNone,
-                        uv && needsUvs ? uv->index(kAny, "accessors") : kNone);
+        std::make_tuple(position->index(kAny, "accessors"), normal ? normal->index(kAny, "accessors") : kNone,
+                        uv ? uv->index(kAny, "accessors") : kNone);
     const auto [entry, isNewPart] = partOf.try_emplace(key, mesh.parts.size());
     if (isNewPart) {
       MeshPart part;
-      part.positions = accessors_.read<Vec3f>(position);
-      const auto checkCount = [&](const Json& attribute, size_t count) {
-        if (count != part.positions.size())
-          attribute.fail(fmt::format("has {} elements, but POSITION has {}", count, part.positions.size()),
-                         kExportAgain);
-      };
-      if (normal) {
-        part.normals = accessors_.read<Vec3f>(*normal);
-        checkCount(*normal, part.normals.size());
-      }
-      if (uv && needsUvs) {
-        const Array<Vec2f> file = accessors_.read<Vec2f>(*uv);
-        checkCount(*uv, file.size());
-        buffers_.budget.charge(file.size() * sizeof(Vec2f), *uv);
-        std::vector<Vec2f> turned(file.size());
-        tbb::parallel_for(tbb::blocked_range<size_t>(0, file.size(), kGrain), [&](const auto& range) {
-          for (size_t k = range.begin(); k < range.end(); k++) turned[k] = {file[k].x, 1 - file[k].y};
-        });
-        part.uvs = Array<Vec2f>::of(std::move(turned));
-      }
+      part.positions = accessors_.read<Vec3f>(*position);
+      size_t bad = 0;
+      if (normal) part.normals = accessors_.read<Vec3f>(*normal, &bad);
+      if (uv) part.uvs = turned(accessors_.read<Vec2f>(*uv, &bad), *uv);
+      mended(bad);
       mesh.parts.push_back(std::move(part));
     }
     MeshPart& part = mesh.parts[entry->second];
-    Array<uint32_t> indices = triangles(primitive, part.positions, position);
+    Array<uint32_t> indices = triangles(primitive, part.positions, *position, nullptr);
     if (!indices.empty()) part.primitives.push_back({material, std::move(indices)});
   }
   std::erase_if(mesh.parts, [](const MeshPart& part) { return part.primitives.empty(); });
   return mesh;
 }
 
-Array<uint32_t> Meshes::triangles(const Json& primitive, const Array<Vec3f>& positions, const Json& position) {
+// v = 0 at the bottom, where the file has it at the top.
+Array<Vec2f> Meshes::turned(const Array<Vec2f>& file, const Json& place) {
+  if (file.empty()) return {};
+  buffers_.budget.charge(file.size() * sizeof(Vec2f), place);
+  std::vector<Vec2f> out(file.size());
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, file.size(), kGrain), [&](const auto& range) {
+    for (size_t k = range.begin(); k < range.end(); k++) out[k] = {file[k].x, 1 - file[k].y};
+  });
+  return Array<Vec2f>::of(std::move(out));
+}
+
+Array<uint32_t> Meshes::triangles(const Json& primitive, const Array<Vec3f>& positions, const Json& position,
+                                  const Array<uint32_t>* decoded) {
   const auto json = primitive.find("indices");
-  const Json place = json.value_or(position);
-  const Mode mode = static_cast<Mode>(primitive.integerOr("mode", kTriangles, 0, 6));
+  const Json place = json && !decoded ? *json : position;
+  const Mode mode = decoded ? kTriangles : static_cast<Mode>(primitive.integerOr("mode", kTriangles, 0, 6));
   Array<uint32_t> indices;
-  if (json) indices = accessors_.read<uint32_t>(*json);
-  const size_t count = json ? indices.size() : positions.size();
-  if (count < 3 || (mode == kTriangles && count % 3 != 0))
-    place.fail(fmt::format("{} vertices do not make triangles", count), kExportAgain);
+  if (decoded)
+    indices = *decoded;
+  else if (json)
+    indices = accessors_.read<uint32_t>(*json);
+  size_t count = decoded || json ? indices.size() : positions.size();
+  const size_t rest = count < 3 ? count : mode == kTriangles ? count % 3 : 0;
+  if (rest > 0) {
+    leftOut_.add(fmt::format("the last {} of {} vertices of {}", rest, count, primitive.path()),
+                 "they make no whole triangle");
+    count -= rest;
+    if (count == 0) return {};
+    if (!indices.empty()) indices.data = indices.data.first(count);
+  }
   const size_t triangles = mode == kTriangles ? count / 3 : count - 2;
   triangles_ += triangles;
   if (triangles_ > kMostTriangles) place.fail("the scene has more than 2^31 triangles", "split the scene");
   buffers_.budget.charge(triangles * 3 * sizeof(uint32_t), place);
 
-  if (!json) indices = consecutive(count);
+  if (indices.empty()) indices = consecutive(count);
   if (mode != kTriangles) indices = unrolled(indices, mode);
   return withoutDegenerate(place, std::move(indices), positions.data);
 }

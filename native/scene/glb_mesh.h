@@ -21,7 +21,10 @@ class Meshes {
 
  private:
   Mesh read(const Json& json);
-  Array<uint32_t> triangles(const Json& primitive, const Array<Vec3f>& positions, const Json& position);
+  // decoded: the triangles' indices, where they do not come from an accessor.
+  Array<uint32_t> triangles(const Json& primitive, const Array<Vec3f>& positions, const Json& position,
+                            const Array<uint32_t>* decoded);
+  Array<Vec2f> turned(const Array<Vec2f>& uvs, const Json& place);
   Array<uint32_t> withoutDegenerate(const Json& place, Array<uint32_t> indices, std::span<const Vec3f> positions);
 
   JsonArray meshes_;

@@ -47,23 +47,26 @@ Affine localMatrix(const Json& node) {
 // The forest of nodes: each one's parent, world matrix, and whether the rendered scene holds it.
 class NodeForest {
  public:
-  NodeForest(const Json& root, const JsonArray& nodes);
-  bool isInScene(size_t node) const { return inScene_[top_[node]]; }
+  NodeForest(const Json& root, const JsonArray& nodes, LeftOut& leftOut);
+  bool isInScene(size_t node) const {
+    for (uint32_t i = static_cast<uint32_t>(node); i != kNone; i = parent_[i])
+      if (inScene_[i]) return true;
+    return false;
+  }
   const Affine& world(size_t node);
 
  private:
   static constexpr uint32_t kNone = UINT32_MAX;
   const JsonArray& nodes_;
-  std::vector<uint32_t> parent_, top_;
-  std::vector<bool> inScene_;  // of nodes without a parent
+  std::vector<uint32_t> parent_;
+  std::vector<bool> inScene_;  // of those that the scene lists: they and what hangs on them
   std::vector<bool> known_;    // whether world_ is
   std::vector<Affine> world_;
 };
 
-NodeForest::NodeForest(const Json& root, const JsonArray& nodes)
+NodeForest::NodeForest(const Json& root, const JsonArray& nodes, LeftOut& leftOut)
     : nodes_(nodes),
       parent_(nodes.size(), kNone),
-      top_(nodes.size()),
       inScene_(nodes.size(), false),
       known_(nodes.size(), false),
       world_(nodes.size()) {
@@ -82,7 +85,6 @@ NodeForest::NodeForest(const Json& root, const JsonArray& nodes)
       if (++level > kMostLevels)
         nodes[i].fail(fmt::format("has more than {} ancestors, or is its own ancestor", kMostLevels - 1),
                       "flatten the hierarchy and export again");
-    top_[i] = top;
   }
 
   const JsonArray scenes = root.array("scenes");
@@ -95,8 +97,9 @@ NodeForest::NodeForest(const Json& root, const JsonArray& nodes)
   for (size_t k = 0; k < roots.size(); k++) {
     const size_t i = roots[k].index(nodes.size(), "nodes");
     if (parent_[i] != kNone)
-      roots[k].fail(fmt::format("node {} is not a root: it is a child of nodes[{}]", i, parent_[i]), kExportAgain);
-    if (inScene_[i]) roots[k].fail(fmt::format("node {} is listed twice", i), kExportAgain);
+      leftOut.add("the root " + nodes[i].described(),
+                  fmt::format("it is none, but a child of {}, and stays there", nodes[parent_[i]].described()));
+    if (inScene_[i]) leftOut.add("the second of the root " + nodes[i].described(), "the scene lists it twice");
     inScene_[i] = true;
   }
 }
@@ -159,9 +162,9 @@ std::vector<Affine> instanceMatrices(const Json& extension, Accessors& accessors
 }  // namespace
 
 void readNodes(const Json& root, Accessors& accessors, Buffers& buffers, Meshes& meshes, LeftOut& leftOut,
-               Scene& scene) {
+               bool needsCamera, Scene& scene) {
   const JsonArray nodes = root.array("nodes");
-  NodeForest forest(root, nodes);
+  NodeForest forest(root, nodes, leftOut);
   const auto own = root.extension(kExtension);
   const JsonArray lights = own ? own->array("lights") : JsonArray(root);
   const auto punctual = root.extension("KHR_lights_punctual");
@@ -188,13 +191,17 @@ void readNodes(const Json& root, Accessors& accessors, Buffers& buffers, Meshes&
     if (!nodes[*cameraNode].find("camera"))
       camera->fail(fmt::format("nodes[{}] has no camera", *cameraNode), kExportAgain);
   }
+  for (size_t i = 0; i < nodes.size() && !cameraNode; i++)
+    if (nodes[i].find("camera") && forest.isInScene(i)) cameraNode = i;
+  if (!cameraNode && needsCamera)
+    throw Error(ExitCode::kScene, scene.path + ": the scene has no camera",
+                "add a camera, or make one active, or let the command choose a view");
   for (size_t i = 0; i < nodes.size(); i++) {
     if (!forest.isInScene(i)) {
       leftOut.add("nodes of other scenes", "only one scene is rendered");
       continue;
     }
     const Json node = nodes[i];
-    if (node.find("camera") && !cameraNode) cameraNode = i;
     if (node.find("skin")) leftOut.add("skin of " + node.described(), "the mesh is rendered at rest");
     if (const auto use = node.find("mesh")) {
       const int mesh = meshes.use(*use);

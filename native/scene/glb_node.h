@@ -11,8 +11,9 @@
 
 namespace wardmis {
 
-// Fills the scene's instances, lights and camera. The film must have been read.
+// Fills the scene's instances, lights and camera. The film must have been read. needsCamera: throws if there is none,
+// before meshes are read.
 void readNodes(const Json& root, Accessors& accessors, Buffers& buffers, Meshes& meshes, LeftOut& leftOut,
-               Scene& scene);
+               bool needsCamera, Scene& scene);
 
 }  // namespace wardmis

@@ -44,12 +44,16 @@ DecodedImage finished(Image image, Encoding encoding) {
 
 }  // namespace
 
+DecodedImage lostImage(std::string damage) {
+  return {Image{"", 1, 1, 3, true, {255, 0, 255}, {}, false}, 0, std::move(damage)};
+}
+
 DecodedImage decodeImage(std::span<const std::byte> file, Encoding encoding, ImageBudget& budget) {
   FileImage read;
   try {
     read = readImageFile(file);
   } catch (const std::runtime_error& e) {
-    return {Image{"", 1, 1, 3, true, {255, 0, 255}, {}}, 0, e.what()};
+    return lostImage(e.what());
   }
   if (!budget.take(read.image.bytes.size() + read.image.floats.size() * sizeof(float)))
     throw UnreadableImage("is one of too many images with the same data");

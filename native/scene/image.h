@@ -28,7 +28,7 @@ struct Encoding {
 struct DecodedImage {
   Image image;
   uint64_t mended = 0;  // values that were not finite, and were set to 0
-  std::string damage;  // why it is not what the file should hold but one magenta texel, Blender's sign for a lost image
+  std::string damage;   // why it is not what the file should hold, but lostImage()
 };
 
 constexpr int kLargestImageSide = 1 << 16;
@@ -53,6 +53,9 @@ class ImageBudget {
  private:
   std::atomic<uint64_t> left_;  // images are decoded in parallel
 };
+
+// One magenta texel, Blender's sign for a lost image.
+DecodedImage lostImage(std::string damage);
 
 // An image file, told by its first bytes; see image_file.h. What cannot be read is no reason not to render the rest.
 DecodedImage decodeImage(std::span<const std::byte> file, Encoding encoding, ImageBudget& budget);

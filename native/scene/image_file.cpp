@@ -20,6 +20,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "image/codecs.h"
 #include "image/oiio.h"
 
 namespace wardmis {
@@ -43,6 +44,15 @@ Image sized(Bytes file, int64_t width, int64_t height, int channels) {
   image.height = static_cast<int>(height);
   image.channels = channels;
   return image;
+}
+
+// From rows that begin at the top to rows that begin at the bottom.
+template <class T>
+void turnOver(std::vector<T>& values, const Image& image) {
+  const size_t row = size_t(image.width) * image.channels;
+  for (int y = 0; y < image.height / 2; ++y)
+    std::swap_ranges(values.begin() + y * row, values.begin() + (y + 1) * row,
+                     values.begin() + (image.height - 1 - y) * row);
 }
 
 size_t valueCount(const Image& image) { return size_t(image.width) * image.height * image.channels; }
@@ -183,14 +193,25 @@ FileImage decodeExr(Bytes file) try {
                                   sizeof(float) * image.channels * image.width));
   exr.setFrameBuffer(frame);
   exr.readPixels(window.min.y, window.max.y);
-  // EXR's first row is the top
-  const size_t row = size_t(image.width) * image.channels;
-  for (int y = 0; y < image.height / 2; ++y)
-    std::swap_ranges(image.floats.begin() + y * row, image.floats.begin() + (y + 1) * row,
-                     image.floats.begin() + (image.height - 1 - y) * row);
+  turnOver(image.floats, image);
   return {std::move(image), false};
 } catch (const Iex::BaseExc& e) {
   fail(std::string("is a damaged OpenEXR file: ") + e.what());
+}
+
+// ---- WebP -----------------------------------------------------------------------------------------------------------
+
+FileImage decodeWebp(Bytes file) {
+  const auto check = [](const char* wrong) {
+    if (wrong) fail(std::string("is a WebP file that cannot be read: ") + wrong);
+  };
+  int width = 0, height = 0, channels = 0;
+  check(codecs().webpOpen(file.data(), file.size(), &width, &height, &channels));
+  Image image = sized(file, width, height, channels);
+  image.bytes.resize(valueCount(image));
+  check(codecs().webpRead(file.data(), file.size(), width, height, channels, image.bytes.data()));
+  turnOver(image.bytes, image);
+  return {std::move(image), true};
 }
 
 // ---- everything else ------------------------------------------------------------------------------------------------
@@ -233,6 +254,10 @@ FileImage readImageFile(Bytes file) {
   if (startsWith(file, "\x89PNG\r\n\x1A\n"sv)) return decodePng(file);
   if (startsWith(file, "\xFF\xD8\xFF"sv)) return decodeJpeg(file);
   if (startsWith(file, "\x76\x2F\x31\x01"sv)) return decodeExr(file);
+  if (startsWith(file, "RIFF"sv) && file.size() > 12 && startsWith(file.subspan(8), "WEBP"sv) && codecs().webpOpen)
+    return decodeWebp(file);
+  if (startsWith(file, "\xABKTX 20\xBB\r\n\x1A\n"sv) || startsWith(file, "sB"sv))
+    fail("is a KTX2 or Basis file (KHR_texture_basisu), which is not read; give it as PNG, JPEG or WebP");
   if (file.empty()) fail("is empty");
   return decodeThroughOiio(file);
 }

@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
 
 namespace wardmis {
 namespace {
@@ -33,6 +36,72 @@ std::string shown(simdjson::dom::element element) {
   }
 }
 
+// simdjson does not say where a text is wrong. A second, slower parser does, which is asked only then.
+class Locator : public nlohmann::json_sax<nlohmann::json> {
+ public:
+  // An input iterator that counts what has been read.
+  struct Reader {
+    using difference_type = std::ptrdiff_t;
+    using value_type = char;
+    using pointer = const char*;
+    using reference = const char&;
+    using iterator_category = std::input_iterator_tag;
+    const char* at;
+    size_t* read;
+    reference operator*() const { return *at; }
+    Reader& operator++() {
+      ++*read, ++at;
+      return *this;
+    }
+    bool operator==(const Reader& b) const { return at == b.at; }
+    bool operator!=(const Reader& b) const { return at != b.at; }
+  };
+
+  // The number of bytes up to where it is wrong and, where this parser knows better, what is; 0: it finds nothing.
+  size_t find(std::string_view text) {
+    size_t read = 0;
+    const Reader begin{text.data(), &read}, end{text.data() + text.size(), &read};
+    return nlohmann::json::sax_parse(begin, end, this) ? 0 : std::clamp<size_t>(read, 1, text.size());
+  }
+  const std::string& what() const { return what_; }
+
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t& text) override {
+    // what simdjson takes for whole, and does not hold
+    return text.find_first_of(".eE") != text.npos;
+  }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_object(size_t) override { return ++depth_ <= kMaxDepth; }
+  bool key(string_t&) override { return true; }
+  bool end_object() override { return --depth_, true; }
+  bool start_array(size_t) override { return ++depth_ <= kMaxDepth; }
+  bool end_array() override { return --depth_, true; }
+  bool parse_error(size_t, const std::string&, const nlohmann::detail::exception& e) override {
+    // "[json.exception.parse_error.101] parse error at line 1, column 2: syntax error while ..."
+    what_ = e.what();
+    const size_t from = what_.find("error while ");
+    what_.erase(0, from != what_.npos ? from : what_.find("] ") + 2);
+    return false;
+  }
+
+ private:
+  size_t depth_ = 0;
+  std::string what_;
+};
+
+// ", line 3, byte 45: what is wrong"
+std::string located(std::string_view text, const char* message) {
+  Locator locator;
+  const size_t bytes = locator.find(text);
+  if (bytes == 0) return fmt::format(": {}", message);
+  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(bytes - 1), '\n');
+  return fmt::format(", line {}, byte {}: {}", line, bytes, locator.what().empty() ? message : cleaned(locator.what()));
+}
+
 }  // namespace
 
 std::string cleaned(std::string_view text) {
@@ -53,7 +122,8 @@ JsonDocument::JsonDocument(std::string file_, std::string_view text) : file(std:
   auto error = parser.allocate(text.size(), kMaxDepth);
   if (!error) error = parser.parse(text.data(), text.size()).get(root);
   if (error)
-    throw Error(ExitCode::kScene, fmt::format("{}: JSON: {}", file, simdjson::error_message(error)), kExportAgain);
+    throw Error(ExitCode::kScene, fmt::format("{}: JSON{}", file, located(text, simdjson::error_message(error))),
+                kExportAgain);
   if (!root.is_object()) Json(*this).failExpected("an object");
 }
 

@@ -62,6 +62,7 @@ class Json {
 
   // Values. Numbers are finite in single precision.
   bool isNull() const { return element_.is_null(); }
+  bool isObject() const { return element_.is_object(); }
   std::string_view string() const;
   bool boolean() const;
   float number(float low = -FLT_MAX, float high = FLT_MAX) const;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
@@ -72,6 +73,7 @@ struct Material {
   ColorInput diffuse, specular, emission;  // emission: W m^-2 sr^-1, both sides
   ScalarInput alphaX{0.1f, {}}, alphaY{0.1f, {}};
   float rotation = 0;  // of the anisotropy, radians, counter-clockwise about the normal
+  bool unlit = false;  // its emission stands for a colour that needs no light, and is none
 
   bool hasTextures() const {
     return (diffuse.texture.texture & specular.texture.texture & emission.texture.texture & alphaX.texture.texture &
@@ -163,6 +165,7 @@ struct World {
 
 struct Scene {
   std::string path;
+  std::vector<std::filesystem::path> files;  // all that it was read from; the first is the scene itself
   std::vector<Image> images;
   std::vector<Texture> textures;
   std::vector<Material> materials;  // in order of first use; one stands in for "no material"
@@ -172,6 +175,7 @@ struct Scene {
   std::optional<Camera> camera;
   Film film;
   bool hasFilm = false;  // the file gave a resolution
+  bool foreign = true;   // without WARDMIS_scene: what it does not say, it leaves open
   World world;
   bool zUp = false;                  // frame of the Normal pass and of the world
   std::vector<std::string> notes;    // from the exporter: what it could not translate

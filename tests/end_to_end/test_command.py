@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The contract of the command, docs/command.md: exit codes, messages, files, progress, statistics."""
 
+import base64
 import json
 import os
 import resource
@@ -419,6 +420,55 @@ class Info(CommandTest):
         said = self.run_command("info", self.scene()).stdout
         for word in ("768 x 512", "triangles", "environment image", "left out"):
             self.assertIn(word, said)
+
+
+class Foreign(CommandTest):
+    """A file of another program, without camera and light."""
+
+    @classmethod
+    def setUpClass(cls):
+        """Needs no scene of Blender's."""
+
+    def setUp(self):
+        super().setUp()
+        triangle = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], "<f4").tobytes()
+        data = "data:application/octet-stream;base64," + base64.b64encode(triangle).decode()
+        self.gltf = self.folder / "triangle.gltf"
+        self.gltf.write_text(
+            json.dumps(
+                {
+                    "asset": {"version": "2.0"},
+                    "buffers": [{"byteLength": 36, "uri": data}],
+                    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+                    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+                    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+                    "nodes": [{"mesh": 0}],
+                }
+            )
+        )
+
+    def test_a_view_and_a_sky_are_chosen_and_said(self):
+        for size, least in (("48x32", 0.15), ("20x60", 0.08)):
+            done = self.render("--spp", "4", "--resolution", size, "--progress", "json", scene=self.gltf)
+            notes = self.events(done.stdout)[0]["notes"]
+            self.assertIn("the scene has no camera: a view of all that it holds is used", notes[0])
+            self.assertIn("the scene has no lights: a constant sky of radiance 1 is used", notes[1])
+            passes = exr.read(self.out).passes
+            seen = passes["Depth"][..., 0] < 1e9
+            self.assertGreater(seen.mean(), least)
+            self.assertFalse(seen[0].any() or seen[-1].any() or seen[:, 0].any() or seen[:, -1].any(), "all is in view")
+            # a diffuse triangle of albedo 0.8 alone in a sky of radiance 1
+            self.assertAlmostEqual(passes["Combined"][..., :3][seen].mean(), 0.8, delta=0.05)
+        info = json.loads(self.run_command("info", self.gltf, "--json").stdout)
+        self.assertEqual(info["camera"], "(fitted)")
+
+    def test_without_defaults(self):
+        self.refused(
+            3, "render", self.gltf, "-o", self.out, "--no-defaults", says=("triangle.gltf: the scene has no camera",)
+        )
+        self.refused(
+            3, "converge", self.gltf, "-o", self.folder / "study", "--no-defaults", says=("the scene has no camera",)
+        )
 
 
 class Compare(CommandTest):

@@ -9,6 +9,7 @@
 
 #include "glb_builder.h"
 #include "math/error.h"
+#include "scene/defaults.h"
 #include "scene/glb.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {  // NOLINT(readability-identifier-naming)
@@ -25,7 +26,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {  // NO
                                  test::bytesOf(data + rest, size - rest));
   }
   try {
-    readGlb(file, {}, "fuzz.glb");
+    Scene scene = readGlb(file, {}, "fuzz.glb");
+    addDefaults(scene);
   } catch (const Error&) {
   }
   return 0;

@@ -2,85 +2,16 @@
 #include "scene/glb.h"
 
 #include <gtest/gtest.h>
-#include <png.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <functional>
 #include <limits>
 
-#include "glb_builder.h"
-#include "math/error.h"
+#include "glb_support.h"
 
 namespace wardmis {
 namespace {
 
-using test::Bytes;
-using test::everything;
-using test::GlbBuilder;
-using test::json;
-using test::primitive;
-using test::rawTexture;
-using test::square;
-using test::textured;
-using test::ward;
-namespace fs = std::filesystem;
-
-Scene read(const Bytes& bytes, const fs::path& folder = {}) { return readGlb(bytes, folder, "scene.glb"); }
-Scene read(const GlbBuilder& b) { return read(b.bytes()); }
-
-// The message of the Error that reading must end in, with what the hint adds.
-std::string errorOf(const std::function<void()>& f, ExitCode code = ExitCode::kScene) {
-  try {
-    f();
-  } catch (const Error& e) {
-    EXPECT_EQ(e.code, code) << e.what();
-    return e.what();
-  }
-  ADD_FAILURE() << "nothing was thrown";
-  return {};
-}
-std::string errorOf(const GlbBuilder& b) {
-  return errorOf([&] { read(b); });
-}
-void expectHas(const std::string& text, const std::string& part) {
-  EXPECT_NE(text.find(part), std::string::npos) << "'" << text << "' lacks '" << part << "'";
-}
-bool listHas(const std::vector<std::string>& list, const std::string& part) {
-  return std::any_of(list.begin(), list.end(), [&](const auto& s) { return s.find(part) != s.npos; });
-}
-void expectNear(Vec3f a, Vec3f b, float tolerance = 1e-6f) {
-  EXPECT_NEAR(a.x, b.x, tolerance);
-  EXPECT_NEAR(a.y, b.y, tolerance);
-  EXPECT_NEAR(a.z, b.z, tolerance);
-}
-
-struct TemporaryFolder {
-  fs::path path = fs::temp_directory_path() / ("wardmis_glb_test_" + std::to_string(getpid()));
-  TemporaryFolder() { fs::create_directories(path); }
-  ~TemporaryFolder() { fs::remove_all(path); }
-  fs::path write(const fs::path& name, const Bytes& bytes) const {
-    fs::create_directories((path / name).parent_path());
-    std::ofstream(path / name, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    return path / name;
-  }
-};
-
-Bytes png2x1(std::vector<uint8_t> rgb) {
-  png_image image{};
-  image.version = PNG_IMAGE_VERSION;
-  image.width = 2;
-  image.height = 1;
-  image.format = PNG_FORMAT_RGB;
-  png_alloc_size_t size = 0;
-  png_image_write_to_memory(&image, nullptr, &size, 0, rgb.data(), 0, nullptr);
-  Bytes out(size);
-  png_image_write_to_memory(&image, out.data(), &size, 0, rgb.data(), 0, nullptr);
-  out.resize(size);
-  return out;
-}
+using namespace test;
 
 // ---- What is read ---------------------------------------------------------------------------------------------------
 
@@ -253,15 +184,20 @@ TEST(Glb, TakesEveryLayoutOfAccessors) {
     expectNear(s.meshes[0].parts[0].positions[2], {5, 5, 0}, 0);
   }
 
-  // No indices; and data that is not aligned.
+  // No indices; and data that is not aligned in memory, since the text before it has an odd length.
   b = square();
   primitive(b).erase("indices");
-  Bytes triangle = test::bytesOf(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}.data(), 36);
-  triangle.insert(triangle.begin(), std::byte{0});
-  const int odd = b.view(triangle);
-  primitive(b)["attributes"]["POSITION"] = b.add(
-      "accessors", {{"bufferView", odd}, {"byteOffset", 1}, {"count", 3}, {"type", "VEC3"}, {"componentType", 5126}});
-  s = read(b);
+  primitive(b)["attributes"]["POSITION"] = b.accessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, 3);
+  b.root["buffers"] = {{{"byteLength", b.binary.size()}}};
+  Bytes odd = b.bytes();
+  uint32_t length;
+  std::memcpy(&length, odd.data() + 12, 4);
+  odd.insert(odd.begin() + 20 + length, std::byte{' '});
+  length++;
+  std::memcpy(odd.data() + 12, &length, 4);
+  const uint32_t whole = static_cast<uint32_t>(odd.size());
+  std::memcpy(odd.data() + 8, &whole, 4);
+  s = read(odd);
   EXPECT_EQ(s.meshes[0].parts[0].primitives[0].indices.size(), 3u);
   expectNear(s.meshes[0].parts[0].positions[2], {0, 1, 0}, 0);
 }
@@ -428,8 +364,8 @@ TEST(Glb, FitsCoreCamerasToTheFilm) {
 
 TEST(Glb, SaysWhatItLeavesOut) {
   GlbBuilder b = textured(ward({{"diffuse", {{"value", {1, 1, 1}}}}}));
-  primitive(b)["attributes"]["COLOR_0"] = 99;  // not even looked at
-  primitive(b)["attributes"]["TANGENT"] = 99;
+  primitive(b)["attributes"]["COLOR_0"] = b.accessor<float>(std::vector<float>(12, NAN), 3);  // not even looked at
+  primitive(b)["attributes"]["TANGENT"] = b.accessor<float>(std::vector<float>(16, NAN), 4);
   primitive(b)["targets"] = json::array();
   b.add("meshes", {{"primitives", 5}});
   b.add("materials", {{"name", "Spare"}});
@@ -440,8 +376,9 @@ TEST(Glb, SaysWhatItLeavesOut) {
   b.root["meshes"][0]["primitives"].push_back(points);
   const Scene s = read(b);
   EXPECT_TRUE(s.meshes[0].parts[0].uvs.empty());
-  for (const char* what : {"COLOR_0", "TANGENT", "TEXCOORD_0", "morph targets of mesh 'Quad'", "1 meshes", "'Spare'",
-                           "animations", "skin of 'Square'", "points and lines"})
+  for (const char* what :
+       {"vertex colours of mesh 'Quad' with material 'Plate'", "TANGENT", "TEXCOORD_0", "morph targets of mesh 'Quad'",
+        "1 meshes", "'Spare'", "animations", "skin of 'Square'", "points and lines"})
     EXPECT_TRUE(listHas(s.leftOut, what)) << what;
 }
 
@@ -509,10 +446,11 @@ TEST(Glb, RefusesWrongContainers) {
   };
   expectHas(with(0, 0x12345678), "neither a GLB file");
   expectHas(with(4, 1), "expected version 2, found 1");
-  expectHas(with(8, 20), "claims 20 bytes");
+  expectHas(with(8, 20), "GLB chunk 0: claims");
+  expectHas(with(8, 4), "claims 4 bytes");
   expectHas(with(8, UINT32_MAX), "claims 4294967295 bytes");
   expectHas(with(12, UINT32_MAX - 3), "GLB chunk 0: claims");
-  expectHas(with(12, 6), "not a multiple of 4");
+  expectHas(with(12, 6), "GLB chunk 1: claims");
   expectHas(with(16, 0x004E4942), "must be JSON");
   uint32_t jsonLength;
   std::memcpy(&jsonLength, good.data() + 12, 4);
@@ -581,10 +519,10 @@ TEST(Glb, RefusesHostileScenes) {
 
   const Hostile kTable[] = {
       // asset and extensions
+      {"extensionsRequired[0]: the scene requires the extension 'KHR_techniques_webgl'",
+       [](GlbBuilder& b) { b.root["extensionsRequired"] = {"KHR_techniques_webgl"}; }},
       {"'asset' is missing", [](GlbBuilder& b) { b.root.erase("asset"); }},
       {"asset.version: expected glTF version 2.x, found \"1.0\"", [](GlbBuilder& b) { b.root["asset"]["version"] = "1.0"; }},
-      {"extensionsRequired[0]: the scene requires the extension 'KHR_draco_mesh_compression'",
-       [](GlbBuilder& b) { b.root["extensionsRequired"] = {"KHR_draco_mesh_compression"}; }},
       {"extensions.WARDMIS_scene.version: expected version 1", [](GlbBuilder& b) { b.extension()["version"] = 2; }},
       {"extensions.WARDMIS_scene.upAxis: expected one of \"Y\", \"Z\", found \"X\"", extension({{"upAxis", "X"}})},
       {"nodes: expected an array, found an object", [](GlbBuilder& b) { b.root["nodes"] = json::object(); }},
@@ -611,13 +549,6 @@ TEST(Glb, RefusesHostileScenes) {
          b.add("nodes", {{"children", {2}}});
          b.add("nodes", json::object());
        }},
-      {"scenes[0].nodes[0]: node 1 is not a root",
-       [](GlbBuilder& b) {
-         b.root["nodes"][0]["children"] = {1};
-         b.add("nodes", json::object());
-         b.root["scenes"] = {{{"nodes", {1}}}};
-       }},
-      {"scenes[0].nodes[1]: node 0 is listed twice", [](GlbBuilder& b) { b.root["scenes"] = {{{"nodes", {0, 0}}}}; }},
       {"scene: refers to scenes[5]",
        [](GlbBuilder& b) {
          b.root["scenes"] = {{{"nodes", {0}}}};
@@ -639,22 +570,13 @@ TEST(Glb, RefusesHostileScenes) {
       // meshes
       {"meshes[0] 'Quad': 'primitives' is missing", [](GlbBuilder& b) { b.root["meshes"][0].erase("primitives"); }},
       {"meshes[0] 'Quad' .primitives: expected at least one", [](GlbBuilder& b) { b.root["meshes"][0]["primitives"] = json::array(); }},
-      {"primitives[0]: 'attributes' is missing", [](GlbBuilder& b) { primitive(b).erase("attributes"); }},
-      {"primitives[0].attributes: 'POSITION' is missing", [](GlbBuilder& b) { primitive(b)["attributes"] = json::object(); }},
       {"primitives[0].mode: expected a whole number from 0 to 6, found 7", [](GlbBuilder& b) { primitive(b)["mode"] = 7; }},
       {"primitives[0].material: refers to materials[0], but the file has 0", [](GlbBuilder& b) { primitive(b)["material"] = 0; }},
       {"primitives[0].indices: refers to vertex 4, but there are 4",
        [](GlbBuilder& b) { primitive(b)["indices"] = b.accessor<uint8_t>({0, 1, 4}, 1); }},
-      {"primitives[0].indices: 2 vertices do not make triangles",
-       [](GlbBuilder& b) { primitive(b)["indices"] = b.accessor<uint8_t>({0, 1}, 1); }},
-      {"attributes.POSITION: 4 vertices do not make triangles", [](GlbBuilder& b) { primitive(b).erase("indices"); }},
       {"meshes[0] 'Quad' .primitives[0].attributes.POSITION: element 2 of accessor 2 is not finite", nan(NAN)},
       {"element 2 of accessor 2 is not finite", nan(INFINITY)},
       {"triangle 0 is too large for single precision", nan(1e30f)},
-      {"attributes.NORMAL: element 1 of accessor 2 is not finite",
-       [](GlbBuilder& b) {
-         primitive(b)["attributes"]["NORMAL"] = b.accessor<float>({0, 0, 1, 0, NAN, 1, 0, 0, 1, 0, 0, 1}, 3);
-       }},
       {"attributes.NORMAL: has 1 elements, but POSITION has 4",
        [](GlbBuilder& b) { primitive(b)["attributes"]["NORMAL"] = b.accessor<float>({0, 0, 1}, 3); }},
       // accessors
@@ -723,18 +645,11 @@ TEST(Glb, RefusesHostileScenes) {
       {"baseColorFactor: expected four numbers >= 0", material({{"pbrMetallicRoughness", {{"baseColorFactor", {0, 0, -1, 1}}}}})},
       {"emissiveFactor: expected three numbers >= 0", material({{"emissiveFactor", {-1, 0, 0}}})},
       {"its emission is not a number", material({{"emissiveFactor", {1e30, 0, 0}}, {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 1e30}}}}}})},
-      {"images[0] 'Wood' .uri: 'wood.png' cannot be read: No such file or directory (needed by material 'Plate')", image({{"name", "Wood"}, {"uri", "wood.png"}})},
-      {"images[0]: expected either uri or bufferView (", image(json::object())},
       {"images[0]: 3 x 3 pixels of 1 channels need 9 bytes, found 48 (needed by material 'Plate')",
        image({{"bufferView", 0}, {"mimeType", "application/x-wardmis-pixels"}, {"extensions", {{"WARDMIS_scene", {{"width", 3}, {"height", 3}, {"channels", 1}, {"type", "u8"}}}}}})},
       {"images[0].extensions.WARDMIS_scene.width: expected a whole number from 1 to 65536, found 2147483648",
        image({{"bufferView", 0}, {"mimeType", "application/x-wardmis-pixels"}, {"extensions", {{"WARDMIS_scene", {{"width", 1u << 31}, {"height", 1u << 31}, {"channels", 4}, {"type", "f32"}}}}}})},
       {"raw pixels need the extension WARDMIS_scene", image({{"bufferView", 0}, {"mimeType", "application/x-wardmis-pixels"}})},
-      {"textures[0]: 'source' is missing",
-       [image](GlbBuilder& b) {
-         image(json::object())(b);
-         b.root["textures"][0].erase("source");
-       }},
       // lights, camera, film
       {"lights[0].type: expected one of", light({{"type", "laser"}})},
       {"lights[0]: 'radiance' is missing", light({{"type", "area"}})},
