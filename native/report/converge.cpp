@@ -109,7 +109,7 @@ class Study {
     e.command = plan.command;
     e.threads = threadsOf(plan.threads);
     e.started = timestamp();
-    e.sceneHash = hashOf(plan.scenePath);
+    e.sceneHash = hashOf(built.scene.files);
     for (size_t i = 0; i < plan.seeds; ++i) e.seeds.push_back(plan.firstSeed + i);
   }
 
@@ -184,7 +184,7 @@ class Study {
                   {"configurations", configurations},
                   {"max_spp", plan_.budgetSeconds > 0 ? json() : json(plan_.maxSpp)},
                   {"budget_seconds", plan_.budgetSeconds},
-                  {"reference", plan_.reference.empty() ? "" : hashOf(plan_.reference)},
+                  {"reference", plan_.reference.empty() ? "" : hashOf({&plan_.reference, 1})},
                   {"reference_seconds", plan_.referenceSeconds},
                   {"first_seed", plan_.firstSeed},
                   {"threads", e.threads}};

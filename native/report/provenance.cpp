@@ -69,9 +69,19 @@ double calibrate() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-std::string hashOf(const std::filesystem::path& path) {
+std::string hashOf(std::span<const std::filesystem::path> files) {
   uint64_t hash = 0xcbf29ce484222325ULL;
-  for (const auto byte : mapFile(path).data) hash = (hash ^ static_cast<uint8_t>(byte)) * 0x100000001b3ULL;
+  const auto add = [&](uint64_t byte) { hash = (hash ^ byte) * 0x100000001b3ULL; };
+  for (size_t i = 0; i < files.size(); ++i) {
+    std::error_code error;
+    if (i > 0 && !std::filesystem::is_regular_file(files[i], error)) {
+      add(1);
+      continue;
+    }
+    const Bytes bytes = mapFile(files[i]);
+    for (int k = 0; i > 0 && k < 8; ++k) add(bytes.size() >> (8 * k) & 0xFF);
+    for (const auto byte : bytes.data) add(static_cast<uint8_t>(byte));
+  }
   return fmt::format("{:016x}", hash);
 }
 

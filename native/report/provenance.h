@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string>
 
 namespace wardmis {
@@ -16,7 +17,8 @@ double loadAverage();     // of the last minute; 0 where unknown
 // Seconds of a fixed loop of one thread: what changes between two of them is the machine.
 double calibrate();
 
-// FNV-1a of a file's bytes, 64 bits, in hexadecimal. Throws Error(kFile).
-std::string hashOf(const std::filesystem::path& path);
+// FNV-1a of the files' bytes, 64 bits, in hexadecimal; of a further file its length comes before them. Throws
+// Error(kFile) if the first one cannot be read: what a scene misses is missing, until it is there.
+std::string hashOf(std::span<const std::filesystem::path> files);
 
 }  // namespace wardmis

@@ -42,6 +42,17 @@ class Converge(CommandTest):
     def quick(self, *options, seeds=4, **more):
         return self.study("--max-spp", 8, "--seeds", seeds, "-c", "equal", "-c", "second-moment", *options, **more)
 
+    def split(self, glb):
+        """A .glb file as a .gltf file with its buffer beside it: both paths."""
+        data = glb.read_bytes()
+        length = int.from_bytes(data[12:16], "little")
+        scene = json.loads(data[20 : 20 + length])
+        gltf, buffer = self.folder / "scene.gltf", self.folder / "scene.bin"
+        buffer.write_bytes(data[28 + length :])
+        scene["buffers"][0]["uri"] = buffer.name
+        gltf.write_text(json.dumps(scene))
+        return gltf, buffer
+
     def of(self, report, name):
         return next(c for c in report["configurations"] if c["name"] == name)
 
@@ -161,6 +172,16 @@ class Converge(CommandTest):
         self.refused(2, *study, "--max-spp", "8", "-c", "equal", says=("another study", "configurations"))
         same = (*study, "--max-spp", "8", "-c", "equal", "-c", "second-moment")
         self.refused(2, *same, "--threads", "1", says=("another study", "threads"))
+        self.assertEqual(self.run_command(*same, "--check").returncode, 0)
+        # what a .gltf refers to belongs to its scene
+        gltf, buffer = self.split(self.scene())
+        study = ("converge", gltf, "-o", self.folder / "split", "--resolution", "8x8", "--seeds", "2", "--max-spp", "2")
+        self.run_command(*study)
+        self.run_command(*study, "--check")
+        data = bytearray(buffer.read_bytes())
+        data[0] ^= 1  # the last bit of a coordinate
+        buffer.write_bytes(data)
+        self.refused(2, *study, "--check", says=("another study", "'scene'"))
         # a run that was cut, and one without its image
         path = self.folder / "study/runs/equal/seed-0001.json"
         run = json.loads(path.read_text())
