@@ -13,7 +13,7 @@ from unittest import mock
 import bpy
 import wardmis
 from support import ADDON, FAKE
-from wardmis import data_panels, panels, properties
+from wardmis import data_panels, nodes, panels, properties
 from wardmis.export import VERSION
 
 COMMAND = (ADDON.parents[1] / "docs" / "command.md").read_text()
@@ -110,8 +110,10 @@ class Tooltips(unittest.TestCase):
     }
 
     def texts(self):
+        for variant, _label, text in nodes.VARIANTS:  # the node's own type could not be registered again
+            yield f"variant {variant}", text
         types_ = bpy.types
-        bases = types_.Operator, types_.PropertyGroup, types_.AddonPreferences, types_.ShaderNodeCustomGroup
+        bases = types_.Operator, types_.PropertyGroup, types_.AddonPreferences
         ours = [c for base in bases for c in base.__subclasses__() if c.__module__.startswith("wardmis")]
         for cls in ours:
             if issubclass(cls, types_.Operator):
