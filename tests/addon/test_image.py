@@ -171,7 +171,7 @@ class Images(unittest.TestCase):
         image, content = self.file("PNG")
         path = os.path.join(self.folder.name, "frame_03.png")
         os.rename(os.path.join(self.folder.name, "image"), path)
-        image.filepath = path.replace("03", "01")
+        image.filepath = path.replace("frame_03", "frame_01")
         image.source = "SEQUENCE"
         self.assertEqual(export_image(Picture(image, frame=3)).encoded, content)
         self.assertIn("frame_04.png' is missing", Picture(image, frame=4).missing())

@@ -194,13 +194,16 @@ class NotUnderstood(MaterialCase):
                 expected = f"material 'M' on object 'O': node 'Odd one' ({node.bl_label}) is not supported; rendered as magenta"
                 self.assertIn(expected, self.context.notes)
 
-    def test_output_without_a_surface_is_magenta(self):
-        self.assertRgb(self.export().diffuse.value, MAGENTA)
+    def test_nothing_is_black_as_in_cycles_and_named(self):
+        self.assertRgb(self.export().diffuse.value, (0, 0, 0))
         self.assertNoted("no surface connected")
-
-    def test_no_output_is_magenta(self):
+        shader = self.node("ShaderNodeBsdfDiffuse")
+        shader.mute = True
+        self.context.notes.clear()
+        self.assertRgb(self.export(shader).diffuse.value, (0, 0, 0))
+        self.assertNoted("no surface connected")
         self.tree.nodes.clear()
-        self.assertRgb(self.export().diffuse.value, MAGENTA)
+        self.assertRgb(self.export().diffuse.value, (0, 0, 0))
         self.assertNoted("no output node")
 
     def test_nodes_in_a_circle_are_black_as_in_cycles_and_named(self):
@@ -214,7 +217,7 @@ class NotUnderstood(MaterialCase):
         if not self.output.mute:
             self.skipTest("this Blender's outputs cannot be muted")
         self.assertRgb(self.export(self.node("ShaderNodeBsdfDiffuse")).diffuse.value, (0, 0, 0))
-        self.assertNoted("its output node is muted")
+        self.assertNoted("no output node that is not muted")
 
     def test_numbers_that_are_not_finite_are_magenta_and_named(self):
         ward = self.node("WardBSDFNode")
@@ -260,6 +263,13 @@ class NotUnderstood(MaterialCase):
         )
         area = (1 - 2 * 0.02 / 0.5) * (1 - 2 * 0.02 / 0.25)  # of the bricks
         occlusion = self.node("ShaderNodeAmbientOcclusion", Color=(0.3, 0.4, 0.5, 1))
+        mesh = bpy.data.meshes.new("Painted")
+        self.addCleanup(lambda: bpy.data.meshes.remove(mesh))
+        mesh.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [], [(0, 1, 2)])
+        paint = mesh.attributes.new("Paint", "FLOAT_COLOR", "POINT")
+        paint.data.foreach_set("color", [0.6, 0.3, 0.9, 1] * 2 + [0, 0, 0, 1])
+        attribute = self.node("ShaderNodeAttribute")
+        attribute.attribute_name = "Paint"
         for node, output, expected in (
             (self.node("ShaderNodeTexNoise"), 0, (0.5, 0.5, 0.5)),
             (checker, "Color", (0.5, 0.4, 0.3)),
@@ -267,13 +277,20 @@ class NotUnderstood(MaterialCase):
             (occlusion, "Color", (0.3, 0.4, 0.5)),
             (occlusion, "AO", (1, 1, 1)),
             (self.node("ShaderNodeWireframe"), 0, (0, 0, 0)),
-            (self.node("ShaderNodeVertexColor"), "Color", (1, 1, 1)),
+            (attribute, "Color", (0.4, 0.2, 0.6)),
+            (attribute, "Fac", (0.4, 0.4, 0.4)),
         ):
             with self.subTest(node.bl_idname):
                 self.context.notes.clear()
                 self.link(node, diffuse, "Color", output)
                 self.assertRgb(self.export(diffuse).diffuse.value, expected)
                 self.assertNoted(f"({node.bl_label}) is not supported as a colour or number", "instead")
+
+    def test_attribute_that_nothing_has_is_black_as_in_cycles(self):
+        attribute, emission = self.node("ShaderNodeAttribute"), self.node("ShaderNodeEmission")
+        attribute.attribute_name = "Nothing"
+        self.link(attribute, emission, "Color")
+        self.assertRgb(self.export(emission).emission.value, (0, 0, 0))
 
     def test_every_node_that_gives_a_value_is_understood_or_has_a_neutral_one(self):
         from wardmis.export.read import CONVERTERS, NEUTRAL
@@ -487,14 +504,22 @@ class Values(MaterialCase):
         image = self.image([[(0.5, 0.5, 0.5, 0.25)]])
         np.testing.assert_allclose(self.pixels(self.of(self.texture(image), "Alpha")), [[[0.25] * 3]], rtol=1e-6)
 
-    def test_second_texture_counts_with_its_mean_and_a_note(self):
-        a, b = self.image([[(0.5, 0.5, 0.5, 1)]], "A"), self.image([[(0.2, 0.2, 0.2, 1), (0.4, 0.4, 0.4, 1)]], "B")
+    def test_textures_with_the_same_coordinates_are_combined(self):
+        a = self.image([[(0.5, 0.5, 0.5, 1), (1, 0.5, 0, 1)]], "A")
+        b = self.image([[(0.2, 0.2, 0.2, 1), (0.4, 0.4, 0.4, 1)]], "B")
         mix = self.node("ShaderNodeMixRGB", i0=1.0)
         mix.blend_type = "MULTIPLY"
-        self.link(self.texture(a), mix, 1)
-        self.link(self.texture(b), mix, 2)
-        np.testing.assert_allclose(self.pixels(self.of(mix)), [[[0.15] * 3]], rtol=1e-5)
-        self.assertNoted("'A' is kept")
+        first, second = self.texture(a), self.texture(b)
+        self.link(first, mix, 1)
+        self.link(second, mix, 2)
+        np.testing.assert_allclose(self.pixels(self.of(mix)), [[(0.1, 0.1, 0.1), (0.4, 0.2, 0)]], rtol=1e-5)
+        self.assertEqual(self.context.notes, [])
+        mapping = self.node("ShaderNodeMapping")  # elsewhere
+        mapping.inputs["Location"].default_value = (0.5, 0, 0)
+        self.link(self.node("ShaderNodeTexCoord"), mapping, "Vector", "UV")
+        self.link(mapping, second, "Vector")
+        np.testing.assert_allclose(self.pixels(self.of(mix)), [[(0.15, 0.15, 0.15), (0.3, 0.15, 0)]], rtol=1e-5)
+        self.assertNoted("different coordinates", "'A'")
 
     def test_uv_mapping(self):
         image = self.image([[(1, 1, 1, 1)]])
@@ -517,10 +542,20 @@ class Values(MaterialCase):
         # (-3 v, 2 u) is swapped, scaled and moved
         np.testing.assert_allclose(self.of(texture).texture.transform, (8, 0, 0.5, 0, -3, 0), atol=1e-6)
         self.assertEqual(self.context.notes, [])
-        mapping.vector_type = "NORMAL"
-        self.assertIsNone(self.of(texture).texture)
-        self.assertNoted("type Normal", "mean")
         mapping.vector_type = "POINT"
         self.link(coordinates, mapping, "Vector", "Generated")
         self.of(texture)
         self.assertNoted("Generated")
+
+    def test_uvs_that_are_made_a_direction(self):
+        """A mapping of type Normal: (u, v, 0) over its length."""
+        texture, mapping = self.texture(self.image([[(0, 0, 0, 1), (1, 1, 1, 1)]])), self.node("ShaderNodeMapping")
+        mapping.vector_type = "NORMAL"
+        self.link(self.node("ShaderNodeTexCoord"), mapping, "Vector", "UV")
+        self.link(mapping, texture, "Vector")
+        found = self.of(texture)
+        self.assertEqual(found.texture.transform, (1, 0, 0, 0, 1, 0))
+        pixels = self.pixels(found)
+        height, width = pixels.shape[:2]
+        v, u = (np.mgrid[0:height, 0:width] + 0.5) / np.array([height, width])[:, None, None]
+        np.testing.assert_array_equal(pixels[..., 0], u / np.hypot(u, v) >= 0.5)

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's materials -> Ward's model. What has no counterpart is named in a note and shown in magenta, never in black."""
+"""Blender's materials -> Ward's model. What has no counterpart is named in a note and shown in magenta, never in black.
+
+What is black in Cycles is so here, and named if it is for want of nodes.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,7 @@ from .. import compat
 from .context import ExportContext
 from .model import MaterialData, not_finite
 from .shader import FALLBACK, Surface, shader
-from .tree import Owner, has_muted_output, output_use
+from .tree import Owner, output_use
 from .value import Calculator, NotFinite, Value, constant
 
 
@@ -54,17 +57,14 @@ def _plain(material: Any) -> Surface:
 def _surface_of(material: Any, owner: Owner) -> Surface:
     tree = material.node_tree
     output = output_use(tree, "Surface", owner)
-    if output is None and has_muted_output(tree):
-        owner.context.note(f"{owner.place}: its output node is muted; rendered as black, as in Cycles")
-        return Surface()
     if output is None:
-        owner.context.note(f"{owner.place} has no output node; rendered as magenta")
-        return FALLBACK
+        owner.context.note(f"{owner.place} has no output node that is not muted; rendered as black, as in Cycles")
+        return Surface()
     for name in ("Volume", "Displacement"):
         part = output_use(tree, name, owner)
         if part is not None and part.is_linked(name):
             part.note(f"has a {name.lower()}, which is not supported; it is left out")
     if output.source("Surface").is_nothing:
-        output.note("has no surface connected; rendered as magenta")
-        return FALLBACK
+        output.note("has no surface connected; rendered as black, as in Cycles")
+        return Surface()
     return shader(output, "Surface")

@@ -9,6 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
+
+from .attribute import mean_color
 from .read import read, read_number
 from .sky import mean_radiance
 from .tree import NodeUse
@@ -51,6 +54,20 @@ def _checker(use: NodeUse, output: Any) -> Neutral:
     if output.name != "Color":
         return constant(0.5), "its mean, 0.5,"
     return _mean(use, read(use, "Color1"), read(use, "Color2")), "the mean of its colours"
+
+
+def _attribute(use: NodeUse, output: Any) -> Neutral:
+    node = use.node
+    if node.bl_idname == "ShaderNodeVertexColor":
+        color = mean_color(node.layer_name)
+    else:
+        color = mean_color(node.attribute_name) if node.attribute_type == "GEOMETRY" else None
+    if color is None or output.name == "Alpha":
+        return constant(1.0), f"1 as its {output.name}"
+    mean = Value(color)
+    if output.type == "VALUE":
+        mean = calculator(use).apply("mean", lambda x: np.repeat(x.mean(-1, keepdims=True), 3, -1), mean)
+    return mean, "the mean of the attribute"
 
 
 def _brick(use: NodeUse, output: Any) -> Neutral:
@@ -109,8 +126,8 @@ def _sky(use: NodeUse, _output: Any) -> Neutral:
 
 NEUTRAL: dict[str, Callable[[NodeUse, Any], Neutral]] = {
     "ShaderNodeAmbientOcclusion": _ambient_occlusion,
-    "ShaderNodeAttribute": _outputs(1.0, Vector=0.0),
-    "ShaderNodeVertexColor": _number(1.0),
+    "ShaderNodeAttribute": _attribute,
+    "ShaderNodeVertexColor": _attribute,
     "ShaderNodeBevel": _number(0.0),
     "ShaderNodeBump": _number(0.0),
     "ShaderNodeNormalMap": _number(0.0),

@@ -20,13 +20,6 @@ def look_up(pixels: np.ndarray, u: np.ndarray, v: np.ndarray, interpolation: str
     return found
 
 
-def finer(pixels: np.ndarray, width: int, height: int, interpolation: str, extension: str) -> np.ndarray:
-    """What is looked up at the centres of so many texels."""
-    u, v = (np.arange(width) + 0.5) / width, (np.arange(height) + 0.5) / height
-    across, up = np.meshgrid(u, v)
-    return look_up(pixels, across, up, interpolation, extension)
-
-
 def fine_size(width: int, height: int) -> tuple[int, int]:
     """Of what a small image is baked into: nodes see colours after they are filtered, and what they make of them is not linear."""
     times = max(1, -(-FINE // max(width, height, 1)))

@@ -87,7 +87,7 @@ def _add_specular(use: NodeUse, a: Surface, b: Surface) -> Surface:
 
 
 def _shape(s: Surface) -> tuple[Any, ...]:
-    return (str(s.alpha_x), str(s.alpha_y), s.alpha_x.lookup, s.alpha_y.lookup, s.rotation, s.variant)
+    return (str(s.alpha_x), str(s.alpha_y), s.rotation, s.variant)
 
 
 def _scaled(use: NodeUse, surface: Surface, weight: Value) -> Surface:

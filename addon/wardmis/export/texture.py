@@ -9,14 +9,11 @@ import numpy as np
 from mathutils import Euler, Matrix, Vector
 
 from .image import MISSING, Picture, picture_of
+from .lookup import IDENTITY, Lookup
 from .tree import NodeUse
-from .value import Lookup, Value, constant
+from .value import Value, constant
 
 UNKNOWN_LIGHT = 0.5  # of a sky or a lamp whose image cannot be shown
-
-
-class NoMap(Exception):
-    """Coordinates that no affine map gives, in words."""
 
 
 def image_texture(use: NodeUse, output: Any) -> Value:
@@ -26,15 +23,10 @@ def image_texture(use: NodeUse, output: Any) -> Value:
         return _missing(use)
     if node.projection != "FLAT":
         use.note(f"has the projection {node.projection.title()}, which is not supported; the image is mapped by UVs")
-    try:
-        if use.owner.kind != "material":
-            raise NoMap(f"is mapped by UVs, which a {use.owner.kind} has not")
-        lookup = Lookup(picture, node.interpolation, node.extension, _transform(use))
-    except NoMap as reason:
-        use.note(f"{reason}; its mean is used everywhere")
-        lookup = Lookup(picture, node.interpolation, node.extension, (1, 0, 0, 0, 1, 0))
-        return _shown(lookup, output).mean()
-    return _shown(lookup, output)
+    if use.owner.kind != "material":
+        use.note(f"is mapped by UVs, which a {use.owner.kind} has not; its mean is used everywhere")
+        return _shown(Lookup(picture, node.interpolation, node.extension, IDENTITY), output).mean()
+    return _shown(Lookup(picture, node.interpolation, node.extension, *_coordinates(use)), output)
 
 
 def environment_texture(use: NodeUse, output: Any) -> Value:
@@ -56,8 +48,8 @@ def environment_texture(use: NodeUse, output: Any) -> Value:
 
 def _shown(lookup: Lookup, output: Any) -> Value:
     if output.name == "Alpha":
-        return Value(np.ones(3), lookup, lambda texel: np.repeat(texel[..., 3:], 3, axis=-1), "alpha")
-    return Value(np.ones(3), lookup)
+        return Value(np.ones(3), (lookup,), lambda t: np.repeat(t[lookup][..., 3:], 3, axis=-1), f"alpha of {lookup}")
+    return Value(np.ones(3), (lookup,))
 
 
 def _picture(use: NodeUse) -> Picture | None:
@@ -85,12 +77,12 @@ def _missing(use: NodeUse) -> Value:
 # ---- coordinates ---------------------------------------------------------------------------------------------------
 
 
-def _transform(use: NodeUse) -> tuple[float, ...]:
-    """The affine map from the mesh's UVs to those of an image."""
-    matrix = _own_mapping(use.node.texture_mapping)
+def _coordinates(use: NodeUse) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """The affine map from the mesh's UVs to those of an image, and the warp before it, as in Lookup."""
+    matrices = _own_mapping(use.node.texture_mapping)
     origin = use.source("Vector")
     while origin.use is not None and origin.use.node.bl_idname == "ShaderNodeMapping":
-        matrix = matrix @ _mapping(origin.use)
+        matrices = _joined(matrices, _affine(origin.use.node.vector_type, *_mapping_inputs(origin.use)))
         origin = origin.use.source("Vector")
     if origin.use is not None and origin.use.node.bl_idname == "ShaderNodeUVMap":
         name = origin.use.node.uv_map
@@ -98,8 +90,17 @@ def _transform(use: NodeUse) -> tuple[float, ...]:
             origin.use.note(f"names the UV map '{name}'; the one that is active for rendering is used")
     elif origin.use is not None and (origin.use.node.bl_idname, origin.socket.name) != ("ShaderNodeTexCoord", "UV"):
         origin.use.note(f"gives coordinates ({origin.socket.name}) that are not supported; UVs are used instead")
-    (a, b, _, c), (d, e, _, f) = matrix[0], matrix[1]
-    return (a, b, c, d, e, f)
+    if len(matrices) > 1:
+        if len(matrices) > 2:
+            use.note("has several mappings of type Normal, which is not supported; the last one counts")
+        return IDENTITY, tuple(float(x) for matrix in reversed(matrices[:2]) for row in matrix[:3] for x in row)
+    (a, b, _, c), (d, e, _, f) = matrices[0][0], matrices[0][1]
+    return (a, b, c, d, e, f), ()
+
+
+def _joined(after: list[Matrix], before: list[Matrix]) -> list[Matrix]:
+    """Maps one after the other, the last one first; between two of a list the vector is made a unit one."""
+    return [*after[:-1], after[-1] @ before[0], *before[1:]]
 
 
 def _directions(use: NodeUse) -> np.ndarray:
@@ -134,10 +135,6 @@ def _linear_part(use: NodeUse, kind: str, location: Any, rotation: Any, scale: A
     return mirror @ turn.transposed() if kind == "TEXTURE" else turn @ mirror
 
 
-def _mapping(use: NodeUse) -> Matrix:
-    return _affine(use.node.vector_type, *_mapping_inputs(use))
-
-
 def _mapping_inputs(use: NodeUse) -> list[Any]:
     """Location, rotation and scale; a Mapping of type Vector or Normal has no location."""
     # late, since what an input receives may itself come from a texture
@@ -153,13 +150,13 @@ def _mapping_inputs(use: NodeUse) -> list[Any]:
     return values
 
 
-def _own_mapping(mapping: Any) -> Matrix:
+def _own_mapping(mapping: Any) -> list[Matrix]:
     """An image node's own Mapping, a panel of its own. Cycles minds neither its limits nor the node's own colours."""
     scale = Vector(mapping.scale)
     if mapping.vector_type in {"TEXTURE", "NORMAL"}:  # kept invertible, as in Cycles
         scale = Vector([s if abs(s) >= 1e-5 else np.copysign(1e-5, s) for s in scale])
     kind, turn = mapping.vector_type, mapping.rotation
-    return _affine(kind, mapping.translation, turn, scale) @ _axes(mapping)
+    return _joined(_affine(kind, mapping.translation, turn, scale), [_axes(mapping)])
 
 
 def _axes(mapping: Any) -> Matrix:
@@ -171,18 +168,13 @@ def _axes(mapping: Any) -> Matrix:
     return matrix
 
 
-def _affine(kind: str, location: Any, rotation: Any, scale: Any) -> Matrix:
+def _affine(kind: str, location: Any, rotation: Any, scale: Any) -> list[Matrix]:
+    """The maps of a Mapping node, as in _joined()."""
+    turn = Euler(rotation).to_matrix().to_4x4()
+    inverse_scale = Matrix.Diagonal([1.0 / s if s else 0.0 for s in (*scale, 1.0)])  # a scale of 0 gives 0
     if kind == "NORMAL":
-        raise NoMap("has a mapping of type Normal, which is for directions")
-    if kind == "VECTOR":
-        location = (0.0, 0.0, 0.0)
-    matrix = Matrix.LocRotScale(Vector(location), Euler(rotation), Vector(scale))
-    if kind != "TEXTURE":
-        return matrix
-    # by parts, since a scale of 0 gives 0 there
-    inverse = Matrix.Diagonal([1.0 / s if s else 0.0 for s in (*scale, 1.0)])
-    return (
-        inverse
-        @ Matrix.LocRotScale(Vector(), Euler(rotation), None).transposed()
-        @ Matrix.Translation(-Vector(location))
-    )
+        return [Matrix.Identity(4), turn @ inverse_scale]
+    if kind == "TEXTURE":
+        return [inverse_scale @ turn.transposed() @ Matrix.Translation(-Vector(location))]
+    moved = Matrix.Translation(Vector(location)) if kind == "POINT" else Matrix.Identity(4)
+    return [moved @ turn @ Matrix.Diagonal((*scale, 1.0))]

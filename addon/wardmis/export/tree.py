@@ -137,10 +137,6 @@ def output_use(tree: Any, name: str, owner: Owner) -> NodeUse | None:
     return None if node is None else NodeUse(node, (), owner)
 
 
-def has_muted_output(tree: Any) -> bool:
-    return any(node.mute and node.bl_idname.startswith("ShaderNodeOutput") for node in tree.nodes)
-
-
 def _nodes_output(tree: Any) -> Any:
     # what Cycles would render: this node's name is that of a kind of output, not of an engine in use
     node = tree.get_output_node("CYCLES")

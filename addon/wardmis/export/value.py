@@ -14,14 +14,15 @@ from typing import Any
 
 import numpy as np
 
-from .image import BakedImage, Picture, encode_srgb
+from .image import BakedImage, encode_srgb
+from .lookup import Lookup, common_size, shown_exactly
 from .model import ColorInput, ScalarInput, TextureUse
-from .resample import fine_size, finer
 from .tree import NodeUse, Owner
 
 LUMINANCE = np.array((0.2126, 0.7152, 0.0722))  # of linear Rec. 709
 
 Function = Callable[..., Any]  # of arrays (..., 3) to one
+Texels = dict[Lookup, np.ndarray]  # what each sees, (..., 4)
 
 
 class NotFinite(Exception):
@@ -29,42 +30,40 @@ class NotFinite(Exception):
 
 
 @dataclass(frozen=True)
-class Lookup:
-    """Which texel: two values with equal look-ups see the same one.
+class Value:
+    """`factor`, times what `function` makes of the RGBA that the look-ups see; `recipe` tells functions apart.
 
-    `transform`: of six numbers, the affine map from the mesh's UVs to the picture's; of nine, the matrix from a direction of the
-    world to the one that is looked up in an equirectangular picture.
+    All look-ups have the same coordinates. What the function is given, and what it returns, are arrays (..., 4) by look-up, and
+    an array (..., 3). Without a function it is the colour that the only look-up sees.
     """
 
-    picture: Picture
-    interpolation: str
-    extension: str
-    transform: tuple[float, ...]
+    factor: np.ndarray
+    lookups: tuple[Lookup, ...] = ()
+    function: Function | None = None
+    recipe: str = ""
 
     @property
-    def is_sky(self) -> bool:
-        return len(self.transform) == 9
+    def lookup(self) -> Lookup | None:
+        """Where it is looked up."""
+        return self.lookups[0] if self.lookups else None
 
-
-@dataclass(frozen=True)
-class Value:
-    """`factor`, with a look-up times its RGB or what `function` makes of its RGBA, called `recipe` to tell functions apart."""
-
-    factor: np.ndarray
-    lookup: Lookup | None = None
-    function: Function | None = None
-    recipe: str = "texel"
-
-    def of(self, texel: np.ndarray) -> np.ndarray:
-        if self.lookup is None:
+    def of(self, texels: Texels) -> np.ndarray:
+        if not self.lookups:
             return self.factor
-        return self.factor.astype(np.float32) * (self.function(texel) if self.function else texel[..., :3])
+        return self.factor.astype(np.float32) * (
+            self.function(texels) if self.function else texels[self.lookups[0]][..., :3]
+        )
+
+    def seen(self) -> np.ndarray:
+        """(height, width, 3): what it is over the whole picture."""
+        width, height = common_size(self.lookups)
+        return self.of({lookup: lookup.seen(width, height) for lookup in self.lookups})
 
     def mean(self) -> Value:
         """Over the picture; of a sky over all directions."""
         if self.lookup is None:
             return self
-        rows = self.of(self.lookup.picture.texels()).mean(axis=1, dtype=float)
+        rows = self.seen().mean(axis=1, dtype=float)
         angles = np.linspace(0.0, np.pi, len(rows) + 1)
         solid_angles = np.cos(angles[:-1]) - np.cos(angles[1:]) if self.lookup.is_sky else None
         return Value(np.average(rows, axis=0, weights=solid_angles))
@@ -75,7 +74,9 @@ class Value:
 
     def __str__(self) -> str:
         """What it is made of, exactly: a baked image is known by it."""
-        return f"{self.factor.tolist()}" + (f" {self.recipe}" if self.lookup else "")
+        if not self.lookups:
+            return f"{self.factor.tolist()}"
+        return f"{self.factor.tolist()} {self.recipe or f'color of {self.lookups[0]}'}"
 
 
 def constant(value: Any) -> Value:
@@ -95,21 +96,20 @@ class Calculator:
     def apply(self, name: str, function: Function, *values: Value) -> Value:
         """function(*values) per texel; `name` must tell it from all others.
 
-        Only one texture can be looked up at a time: others count with their mean.
+        Only textures with the same coordinates can be combined: others than the first one's count with their mean.
         """
-        lookups = {value.lookup for value in values if value.lookup is not None}
+        lookups = tuple(dict.fromkeys(lookup for value in values for lookup in value.lookups))
         if not lookups:
             return Value(np.asarray(function(*(value.factor for value in values)), float))
-        if len(lookups) > 1:
-            kept = next(value.lookup for value in values if value.lookup is not None)
+        if not all(lookup.goes_with(lookups[0]) for lookup in lookups):
             self.owner.context.note(
-                f"{self.owner.place}: several textures are combined; only '{kept.picture.image.name}' is kept, "
-                "the others are replaced by their mean"
+                f"{self.owner.place}: textures with different coordinates are combined; only '{lookups[0].picture.name}' and those "
+                "with the same are kept, the others are replaced by their mean"
             )
-            values = tuple(value if value.lookup == kept else value.mean() for value in values)
-            lookups = {kept}
+            values = tuple(v if v.lookup is None or v.lookup.goes_with(lookups[0]) else v.mean() for v in values)
+            lookups = tuple(lookup for lookup in lookups if lookup.goes_with(lookups[0]))
         recipe = f"{name}({', '.join(map(str, values))})"
-        return Value(np.ones(3), lookups.pop(), lambda t: function(*(value.of(t) for value in values)), recipe)
+        return Value(np.ones(3), lookups, lambda t: function(*(value.of(t) for value in values)), recipe)
 
     def add(self, a: Value, b: Value) -> Value:
         if a.is_black or b.is_black:
@@ -120,7 +120,7 @@ class Calculator:
         """A constant factor needs no new image."""
         if a.lookup is None or b.lookup is None:
             textured = b if a.lookup is None else a
-            return Value(a.factor * b.factor, textured.lookup, textured.function, textured.recipe)
+            return Value(a.factor * b.factor, textured.lookups, textured.function, textured.recipe)
         return self.apply("multiply", np.multiply, a, b)
 
     def complement(self, a: Value) -> Value:
@@ -141,31 +141,32 @@ class Calculator:
         return ScalarInput(float(np.maximum(a.factor[0], 0.0)), self.texture(a, 1) if a.lookup else None)
 
     def texture(self, a: Value, channels: int) -> TextureUse:
-        assert a.lookup is not None
-        picture: Any = a.lookup.picture
-        interpolation, extension, function = a.lookup.interpolation, a.lookup.extension, a.function
-        if function is not None:
-            # a large one, encoded as its source, is filtered nearly as in Cycles, whose nodes see filtered colours; alpha is not
-            source, encoded, how = picture, picture.is_encoded and "texel" in a.recipe, (interpolation, extension)
-            width, height = source.image.size
-            if source.frame is not None:
+        """One that shows the value without its factor: the picture itself where nothing is made of it, else a new image."""
+        lookup = a.lookup
+        assert lookup is not None
+        image: Any = lookup.picture
+        interpolation = lookup.interpolation
+        if a.function is not None or lookup.warp:
+            image = self._baked(Value(np.ones(3), a.lookups, a.function, a.recipe), channels)
+            interpolation = "Closest" if shown_exactly(a.lookups) else "Linear"
+        index = self.owner.context.texture(image, interpolation, lookup.extension)
+        return TextureUse(index) if lookup.is_sky else TextureUse(index, transform=lookup.transform)  # type: ignore[arg-type]
+
+    def _baked(self, a: Value, channels: int) -> BakedImage:
+        pictures = [lookup.picture for lookup in a.lookups]
+        for picture in pictures:
+            if picture.frame is not None:
                 self.owner.context.note(
-                    f"{self.owner.place}: image '{source.name}' is a sequence; behind nodes the picture that Blender holds now is used"
+                    f"{self.owner.place}: image '{picture.name}' is a sequence; behind nodes the picture that Blender holds now is used"
                 )
-            size = (width, height) if interpolation == "Closest" else fine_size(width, height)
+        # encoded as its source, a large image is filtered nearly as in Cycles, whose nodes see filtered colours; alpha is no colour
+        encoded = all(picture.is_encoded for picture in pictures) and "color of" in str(a)
 
-            def filtered(pixels: np.ndarray) -> np.ndarray:
-                return pixels if size == (width, height) else finer(pixels, size[0], size[1], *how)
+        def bake() -> np.ndarray:
+            baked = a.seen()[..., :channels]
+            return (encode_srgb(baked) if encoded else baked).astype(np.float32)
 
-            def bake() -> np.ndarray:
-                baked = function(source.texels(filtered))[..., :channels]
-                return (encode_srgb(baked) if encoded else baked).astype(np.float32)
-
-            name = f"{picture.image.name} (baked)"
-            picture = BakedImage(name, f"{picture.name_full} {how}: {a.recipe}, {channels}", bake, encoded)
-            interpolation = interpolation if size == (width, height) else "Linear"
-        index = self.owner.context.texture(picture, interpolation, extension)
-        return TextureUse(index) if a.lookup.is_sky else TextureUse(index, transform=a.lookup.transform)  # type: ignore[arg-type]
+        return BakedImage(f"{pictures[0].name} (baked)", f"{a}, {channels} channels", bake, encoded)
 
 
 def calculator(use: NodeUse) -> Calculator:
