@@ -350,11 +350,19 @@ class World(SceneTest):
         self.environment("POINT", scale=(-1, 1, 1))
         np.testing.assert_allclose(self.gather().world.matrix, np.diag((-1, 1, 1)), atol=1e-6)
 
+    def test_mapping_stretches_the_environment(self):
+        for kind, stretched in (("POINT", (2, 1, -4)), ("TEXTURE", (0.5, 1, -0.25)), ("NORMAL", (0.5, 1, -0.25))):
+            with self.subTest(kind):
+                self.environment(kind, scale=(2, 1, -4))
+                scene = self.gather()
+                np.testing.assert_allclose(scene.world.matrix, np.diag(stretched), atol=1e-6)
+                self.assertEqual(scene.notes, [])
+
     def test_what_is_not_understood_is_noted(self):
-        self.environment("POINT", scale=(1, 2, 1)).projection = "MIRROR_BALL"
+        self.environment("POINT", scale=(1, 0, 1)).projection = "MIRROR_BALL"
         notes = "\n".join(self.gather().notes)
         self.assertIn("has the projection Mirror_Ball, which is not supported", notes)
-        self.assertIn("node 'Mapping' (Mapping) moves or stretches the sky; only its rotation is used", notes)
+        self.assertIn("node 'Mapping' (Mapping) flattens the sky; its scale is left out", notes)
 
     def test_volume_and_ray_visibility_are_noted(self):
         volume = self.tree.nodes.new("ShaderNodeVolumeScatter")

@@ -105,6 +105,6 @@ def _sun(light: Any, power: float, data: LightData) -> None:
     if half > 0 and not compat.light_is_normalized(light):
         data.emission *= math.pi * math.sin(half) ** 2
     elif not compat.LIGHTS_OF_4_0:
-        data.flat = True
+        data.flat = half > 0
         cosine = max(0.0, math.cos(half))  # of 90 degrees it may be just below
         data.emission *= 2 * cosine / (1 + cosine)  # what a surface that faces it gets

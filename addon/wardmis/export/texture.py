@@ -122,17 +122,16 @@ def _directions(use: NodeUse) -> np.ndarray:
 
 
 def _linear_part(use: NodeUse, kind: str, location: Any, rotation: Any, scale: Any) -> Matrix:
-    """An image of directions can be turned and mirrored, nothing else."""
-    if (
-        not np.allclose(np.abs(scale), np.abs(scale[0]))
-        or not all(scale)
-        or (kind in {"POINT", "TEXTURE"} and any(location))
-    ):
-        use.note("moves or stretches the sky; only its rotation is used")
+    """An image of directions can be turned, mirrored and stretched, not moved, nor flattened."""
+    if kind in {"POINT", "TEXTURE"} and any(location):
+        use.note("moves the sky; only its rotation and scale are used")
+    if not all(scale):
+        use.note("flattens the sky; its scale is left out")
         scale = (1.0, 1.0, 1.0)
     turn = Euler(rotation).to_matrix()
-    mirror = Matrix.Diagonal([np.sign(s) for s in scale])
-    return mirror @ turn.transposed() if kind == "TEXTURE" else turn @ mirror
+    if kind == "TEXTURE":
+        return Matrix.Diagonal([1 / s for s in scale]) @ turn.transposed()
+    return turn @ Matrix.Diagonal([1 / s if kind == "NORMAL" else s for s in scale])
 
 
 def _mapping_inputs(use: NodeUse) -> list[Any]:

@@ -68,6 +68,11 @@ def image_large():
 
 
 @scene
+def image_stretched():
+    image_sky(64, Rotation=(0.4, -0.3, 1.1), Scale=(1, -1.6, 0.5))
+
+
+@scene
 def image_seen():
     """Behind things, where the camera looks at it."""
     image_sky(64)
