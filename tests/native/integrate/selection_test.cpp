@@ -191,7 +191,7 @@ TEST(Selection, ATexelThatShinesIsAimedAt) {
   scene.images.push_back(std::move(image));
   Texture t;
   t.image = 0;
-  t.nearest = true;
+  t.filter = Filter::kNearest;
   scene.textures.push_back(t);
   Material m;
   m.name = "screen";
