@@ -36,11 +36,11 @@ std::string refusal(const Scene& scene) {
 }
 
 TEST(Needs, EmissiveInstancesMustFitIntoMemory) {
-  // a file of a few MB: 10^5 objects of 10^6 emissive triangles would take 5 TB
+  // a file of a few MB: 10^5 objects of 10^6 emissive triangles would take 6 TB
   const std::string said = refusal(instances(100'000, 1'000'000, 1));
   EXPECT_TRUE(
       said.starts_with("many.glb: 100000 objects with 100000000000 emissive triangles, instances counted, "
-                       "would need 5000.1 GB of memory, and "))
+                       "would need 6400.1 GB of memory, and "))
       << said;
   EXPECT_NE(said.find("place emissive meshes fewer times"), std::string::npos) << said;
   EXPECT_EQ(refusal(instances(100'000, 1'000'000, 0)), "");  // without emission nothing is listed
