@@ -12,7 +12,7 @@ import bpy
 from bpy.props import StringProperty
 from bpy_extras.io_utils import ExportHelper
 
-from . import second_blender
+from . import second_blender, warnings
 from .engine import WARDMIS_RenderEngine, scene_export_to
 from .export import ExportError, export_depsgraph
 from .export.target import check_target
@@ -44,21 +44,25 @@ def export_command(blend: Path, place: dict[str, str], percentage: int, path: Pa
     return second_blender.command(blend, place, "operators", percentage=percentage, path=str(path))
 
 
-def run_task(_tell: second_blender.Tell, percentage: int, path: str) -> None:
+def run_task(tell: second_blender.Tell, percentage: int, path: str) -> None:
     bpy.context.scene.render.resolution_percentage = percentage
     export_scene(path)
+    for event in warnings.events(**second_blender.place(bpy.context)):
+        tell(event)
 
 
 def _export_by_second_blender(path: Path) -> None:
     with tempfile.TemporaryDirectory(prefix="wardmis-", dir=bpy.app.tempdir) as folder:
         blend = second_blender.save_copy(Path(folder))[0]
         percentage = bpy.context.scene.render.resolution_percentage
-        with Renderer(
-            export_command(blend, second_blender.place(bpy.context), percentage, path), second_blender.NAME
-        ) as process:
+        place = second_blender.place(bpy.context)
+        warnings.begin(**place)
+        with Renderer(export_command(blend, place, percentage, path), second_blender.NAME) as process:
             while process.running():
-                process.events(WAIT_SECONDS)
-            process.finish()
+                for event in process.events(WAIT_SECONDS):
+                    warnings.take(event, **place)
+            for event in process.finish():
+                warnings.take(event, **place)
 
 
 def _export_by_render(path: Path) -> None:

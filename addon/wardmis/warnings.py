@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -44,11 +44,11 @@ def begin(scene: str, layer: str) -> None:
     _warnings[scene, layer] = {}
 
 
-def add(scene: str, layer: str, text: str) -> None:
-    """`text` may be a note of the export, which knows whose it is. In the background it is told at once."""
+def add(scene: str, layer: str, text: str, owner: str = "") -> None:
+    """A note of the export knows whose it is. In the background it is told at once."""
     known = _warnings.setdefault((scene, layer), {})
     if text not in known:
-        known[str(text)] = Warning_(str(text), _owner_of(text))
+        known[str(text)] = Warning_(str(text), owner or _owner_of(text))
         if bpy.app.background:
             _tell(known[text].full)
 
@@ -64,6 +64,19 @@ def of_scene(scene: Any) -> list[Warning_]:
     for layer in scene.view_layers:
         found |= _warnings.get((scene.name, layer.name), {})
     return list(found.values())
+
+
+def events(scene: str, layer: str) -> Iterator[dict[str, str]]:
+    """For another Blender, which take() them."""
+    for warning in _warnings.get((scene, layer), {}).values():
+        yield {"event": "warning", "message": warning.text, "owner": warning.owner}
+
+
+def take(event: dict[str, Any], scene: str, layer: str) -> None:
+    """Adds it if it is one."""
+    if event.get("event") == "warning":
+        add(scene, layer, str(event.get("message")), str(event.get("owner", "")))
+        redraw()
 
 
 def failed(text: str) -> None:

@@ -19,7 +19,7 @@ import numpy as np
 import wardmis
 from comparison_support import SMALL, ComparisonTest
 from support import ADDON
-from wardmis import compat, rendering, scripting, second_blender
+from wardmis import compat, rendering, scripting, second_blender, warnings
 from wardmis import layout as panel_layout
 from wardmis.comparison import colours, images, job, operators, panels, plot, properties
 from wardmis.comparison.command_line import progress_text
@@ -308,6 +308,21 @@ class SecondBlender(PanelTest):
         arguments = self.calls()[-1]
         self.assertEqual(arguments[arguments.index("--seeds") + 1], "2")
         self.assertEqual(list((Path(bpy.app.tempdir) / "wardmis-comparison").iterdir()), [])
+
+    def test_its_warnings_are_seen_in_the_first(self):
+        self.floor.is_shadow_catcher = True
+        self.folder.mkdir()
+        quiet = mock.patch.object(warnings, "_tell", lambda _text: None)
+        quiet.start()
+        self.addCleanup(quiet.stop)
+        place = self.scene.name, self.scene.view_layers[0].name
+        self.addCleanup(warnings.begin, *place)
+        for export in (lambda: wardmis.export_scene(self.folder / "scene.glb"), self.compare):
+            warnings.begin(*place)
+            export()
+            found = {warning.text: warning.owner for warning in warnings.of_scene(self.scene)}
+            about = [text for text in found if "shadow catchers are not supported" in text]
+            self.assertEqual([found[text] for text in about], ["Floor"], found)
 
     def test_failures_are_told(self):
         self.scene.camera = None

@@ -46,6 +46,7 @@ class Job:
         self.fraction = 0.0
         self.failure = ""  # the message for the user
         self.stopping = False
+        self.heard: Callable[[dict[str, Any]], None] = lambda _event: None  # is told of every event
         self.running = True
         self._finished = finished
         self._temporary = temporary
@@ -102,6 +103,7 @@ class Job:
                 self.failure = str(error)
 
     def _take(self, event: dict[str, Any]) -> None:
+        self.heard(event)
         with contextlib.suppress(KeyError, TypeError, ValueError):
             if event.get("event") == "progress":
                 self.fraction = float(event["fraction"])

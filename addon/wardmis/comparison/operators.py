@@ -17,7 +17,7 @@ from typing import Any
 import bpy
 from bpy.props import EnumProperty, StringProperty
 
-from .. import rendering, second_blender
+from .. import rendering, second_blender, warnings
 from ..operators import export_command
 from ..preferences import renderer_path
 from ..process import RendererError
@@ -103,9 +103,13 @@ def begin(context: Any) -> job.Job:
     files = second_blender.save_copy(staging) if asked.needs_copy else []
     percentage = asked.percentage
     if second_blender.wanted():
-        command = export_command(files[0], second_blender.place(context), percentage, staging / SCENE_NAME)
+        place = second_blender.place(context)
+        warnings.begin(**place)
+        command = export_command(files[0], place, percentage, staging / SCENE_NAME)
         stages = [job.Stage("the export", command, then=asked.stages)]
-        return job.start(lambda _job: stages, _finished, files)
+        started = job.start(lambda _job: stages, _finished, files)
+        started.heard = lambda event: warnings.take(event, **place)
+        return started
     with overridden([(scene.render, "resolution_percentage", percentage)]):
         prepare(staging, asked.study)
     return job.start(asked.stages, _finished, files)
