@@ -59,9 +59,10 @@ void SettingOptions::add(CLI::App& app) {
   app.add_option("--samples-per-hit", numbers_.samplesPerHit, "samples shared at the first hit")
       ->check(CLI::Range(1, kMaxSamplesPerHit))
       ->capture_default_str();
-  app.add_option("--pilot-spp", numbers_.pilotSpp,
-                 "camera samples per pixel that estimate the moments; auto takes more beyond 64 samples, at most a "
-                 "16th, beside the image's")
+  app.add_option(
+         "--pilot-spp", numbers_.pilotSpp,
+         "camera samples per pixel that estimate the moments; of auto per 2 x 2 pixels, beside the image's: more "
+         "beyond 64 samples, at most a 16th of them, so that below 16 its counts are equal")
       ->check(CLI::Range(0u, 1u << 20))
       ->capture_default_str();
   app.add_option("--min-fraction", numbers_.minFraction, "no technique gets less than this share; not for auto")

@@ -36,8 +36,9 @@ class SettingOptions {
 
  private:
   RenderSettings numbers_;
-  std::string allocation_ = "second-moment", weights_ = "auto", integrand_ = "split", integrator_ = "path",
-              sampler_ = "sobol", kernel_ = "auto", cost_ = "rays";
+  std::string allocation_{name(RenderSettings{}.allocation)},
+      weights_ = "auto", integrand_ = "split", integrator_ = "path", sampler_ = "sobol", kernel_ = "auto",
+      cost_ = "rays";
 };
 
 // Without what ends a render.

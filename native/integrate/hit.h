@@ -99,12 +99,24 @@ struct Continuations {
 // Moments of the two integrands (joint: of the first alone).
 struct HitMoments {
   Moments specular, diffuse;
+
+  HitMoments& operator+=(const HitMoments& b) {
+    specular += b.specular, diffuse += b.diffuse;
+    return *this;
+  }
 };
 
-// What the pilot wants to know of a hit.
+// Where the pilot notes what the samples of a hit bring: its moments, or, for `auto`, the sums of the candidates. Of
+// all light, also of what comes by way of other surfaces.
 struct HitRecord {
-  HitMoments& moments;                 // of the light that comes directly
-  CandidateHit* candidates = nullptr;  // where the allocation is `auto`: of all light
+  HitMoments* moments = nullptr;
+  CandidateHit* candidates = nullptr;
+
+  // A sample's value f in one integrand (second: the diffuse one of split integrands), as for Moments::add.
+  void add(bool second, float f, const Fractions& p, const Fractions& n, TechniqueMask used, int set) {
+    if (moments != nullptr) (second ? moments->diffuse : moments->specular).add(f, p, n, used);
+    if (candidates != nullptr) candidates->add(f, p, n, used, set);
+  }
 };
 
 // Estimates the direct light at x, in double where T is (sharp lobes). Continuations are kept only if N needs bounces.
@@ -151,11 +163,8 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
   const bool vectorised = specular && j >= kVectorised;
   if (vectorised) evaluate(s, wo, batch, j);
 
-  HitMoments* const moments = record != nullptr ? &record->moments : nullptr;
-  CandidateHit* const candidates = record != nullptr ? record->candidates : nullptr;
-  const auto note = [&](Moments& m, Rgb f, const Fractions& p, TechniqueMask used, int set) {
-    m.add(luminance(f), p, mixture.n, used);
-    if (candidates != nullptr) candidates->add(luminance(f), p, mixture.n, used, set);
+  const auto note = [&](bool second, Rgb f, const Fractions& p, TechniqueMask used, int set) {
+    if (record != nullptr) record->add(second, luminance(f), p, mixture.n, used, set);
   };
 
   // One sample's share of an emitter's light, by MIS over the techniques of each integral.
@@ -166,20 +175,21 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     if (!split) {
       const Rgb f = (fs + fd) * radiance;
       sum += f * mixture.scale(t, p, kAllTechniques);
-      if (moments != nullptr) note(moments->specular, f, p, kAllTechniques, set);
+      note(false, f, p, kAllTechniques, set);
       return;
     }
     if (specular && t != kCosine) {
       const Rgb f = fs * radiance;
       sum += f * mixture.scale(t, p, kSpecularTechniques);
-      if (moments != nullptr) note(moments->specular, f, p, kSpecularTechniques, set);
+      note(false, f, p, kSpecularTechniques, set);
     }
     if (diffuse && t != kLobe) {
       const Rgb f = fd * radiance;
       sum += f * mixture.scale(t, p, kDiffuseTechniques);
-      if (moments != nullptr) note(moments->diffuse, f, p, kDiffuseTechniques, set);
+      note(true, f, p, kDiffuseTechniques, set);
     }
-    if (candidates != nullptr) candidates->addBoth(luminance(fs * radiance), luminance(fd * radiance), p, mixture.n);
+    if (record != nullptr && record->candidates != nullptr)
+      record->candidates->addBoth(luminance(fs * radiance), luminance(fd * radiance), p, mixture.n);
   };
 
   for (int k = 0; k < j; ++k) {
@@ -219,12 +229,17 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
         if (world.accel.occluded(shadow)) continue;
       }
       if (l.exclusive) {
-        const Rgb f =
-            ((l.visibility & kSeenByGlossy) != 0 ? fs : Rgb{}) + ((l.visibility & kSeenByDiffuse) != 0 ? fd : Rgb{});
-        sum += f * l.radiance / (l.pdf * mixture.n[kLight]);
+        const Rgb s0 = (l.visibility & kSeenByGlossy) != 0 ? fs * l.radiance : Rgb{};
+        const Rgb d0 = (l.visibility & kSeenByDiffuse) != 0 ? fd * l.radiance : Rgb{};
+        sum += (s0 + d0) / (l.pdf * mixture.n[kLight]);
         // which of the lights is drawn is noise, too, and no other technique covers them
-        if (candidates != nullptr)
-          candidates->add(luminance(f * l.radiance), {0, 0, l.pdf}, mixture.n, maskOf(kLight), set);
+        const Fractions alone{0, 0, l.pdf};
+        if (split && record != nullptr && record->moments != nullptr) {
+          note(false, s0, alone, maskOf(kLight), set);
+          note(true, d0, alone, maskOf(kLight), set);
+        } else {
+          note(false, s0 + d0, alone, maskOf(kLight), set);
+        }
       } else {
         p[kLight] = l.pdf;
         add(kLight, fs, fd, l.radiance, p, l.visibility, set);
@@ -261,7 +276,8 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       if (maxComponent(w) > 0) continuations.list.set(continuations.count++, {ray, hit, w, t, scale, set, p});
     }
   }
-  if (moments != nullptr) moments->specular.hits += 1, moments->diffuse.hits += 1;
+  if (record != nullptr && record->moments != nullptr)
+    record->moments->specular.hits += 1, record->moments->diffuse.hits += 1;
   return sum;
 }
 

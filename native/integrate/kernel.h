@@ -13,8 +13,8 @@ struct KernelInput {
   const CameraRays& camera;
   const PixelFilter& filter;
   const Sampler& sampler;
-  const std::vector<PixelFractions>* perPixel;  // null: `fractions` everywhere
-  Fractions fractions;                          // of a hit, before it is restricted to what the surface has
+  const FractionsMap* perPixel;  // null: `fractions` everywhere
+  Fractions fractions;           // of a hit, before it is restricted to what the surface has
   Allocation rule;
   Integrand integrand;
   Weights weights;
@@ -24,6 +24,7 @@ struct KernelInput {
   bool lights;       // the light technique has something to aim at
   bool surfaceRays;  // rays of the surface's techniques can find light
   int x0, y0;        // of the border in the full frame
+  int side = 1;      // of a pixel of the film, in pixels of the image; more for a coarse pilot
 };
 
 struct Tile {

@@ -3,8 +3,6 @@
 // surface, turned into each pixel's fractions. Fixed before the main samples are drawn, so these stay unbiased.
 #pragma once
 
-#include <utility>
-
 #include "integrate/hit.h"
 
 namespace wardmis {
@@ -26,7 +24,6 @@ struct PixelSurface {
 struct PilotPixel {
   PixelSurface surface;
   TechniqueMask techniques = kAllTechniques;  // that this surface has
-  HitMoments moments;
 };
 
 // What the pilot found for a pixel's own surface. A hit of another one takes equal counts.
@@ -35,21 +32,52 @@ struct PixelFractions {
   Fractions fractions{};
 };
 
+// The fractions of an image, one set for each square of `side` x `side` pixels.
+struct FractionsMap {
+  int side = 1, width = 0;
+  std::vector<PixelFractions> squares;
+
+  const PixelFractions& at(int x, int y) const {
+    return squares[static_cast<size_t>(y / side) * static_cast<size_t>(width) + static_cast<size_t>(x / side)];
+  }
+};
+
+// A pilot of `auto` is coarse: it has one pixel for a square of the image's, since it is no part of the image.
+inline constexpr int kCoarse = 2;  // pixels, a side
+
 struct Pilot {
   int width, height;
   std::vector<PilotPixel> pixels;
-  std::vector<CandidateSums> candidates;  // of each pixel, where the allocation is `auto`; else none
+  std::vector<HitMoments> moments;        // of each pixel; none where the allocation is `auto`,
+  std::vector<CandidateSums> candidates;  // where these are
 
   Pilot(int w, int h, Allocation rule) : width(w), height(h), pixels(static_cast<size_t>(w) * static_cast<size_t>(h)) {
-    if (rule == Allocation::kAuto) candidates.resize(pixels.size());
+    if (rule == Allocation::kAuto)
+      candidates.resize(pixels.size());
+    else
+      moments.resize(pixels.size());
   }
 
-  // The moments and candidates of a pixel with those of its neighbours on the same surface, 7 x 7 pixels.
-  std::pair<HitMoments, CandidateSums> smoothed(int x, int y) const;
+  // The sum of `values`, moments or candidates, over a pixel and its neighbours on the same surface, 7 x 7 pixels.
+  template <class T>
+  T smoothed(const std::vector<T>& values, int x, int y) const {
+    constexpr int kRadius = 3;
+    const PixelSurface& center = pixels[index(x, y)].surface;
+    T sum{};
+    for (int v = std::max(0, y - kRadius); v <= std::min(height - 1, y + kRadius); ++v)
+      for (int u = std::max(0, x - kRadius); u <= std::min(width - 1, x + kRadius); ++u)
+        if (center.holds(pixels[index(u, v)].surface)) sum += values[index(u, v)];
+    return sum;
+  }
 
-  // Fractions per pixel of the techniques that the scene has (`available`).
+  // Fractions of each pixel, of the techniques that the scene has (`available`).
   std::vector<PixelFractions> fractions(Allocation rule, Integrand integrand, TechniqueMask available, float minimum,
                                         const CandidateLists& lists, const SampleCost& cost) const;
+
+ private:
+  size_t index(int x, int y) const {
+    return static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
+  }
 };
 
 }  // namespace wardmis

@@ -12,23 +12,28 @@
 #include <utility>
 
 #include "integrate/cost.h"
+#include "integrate/memory.h"
 #include "integrate/setup.h"
 
 namespace wardmis {
 namespace {
 
-constexpr uint32_t kWhole = 16;  // a pilot of this part of a render, or less, is little
+constexpr uint32_t kLeastForPilot = 16;  // samples: the pilot of `auto` does not pay with fewer
+constexpr double kPilotTime = 1.0 / 16;  // of a time limit, for the pilot of `auto`
+// What a sample of a coarse pilot costs, in samples of the image: its hits draw kSets of each technique.
+constexpr double kCoarseSample = double(kSets) / (kCoarse * kCoarse);
 
 uint32_t targetOf(const RenderSettings& s) { return s.seconds > 0 ? ~uint32_t{0} : s.spp; }
-// Of a render of `target` samples: at most half of them, and none of one sample. One that is no part of the image is to
-// cost little, too, and grows like the root of their number: what a wrong choice costs grows with the samples that
-// follow it, and falls with the pilot's.
+bool coarse(const RenderSettings& s) { return s.allocation == Allocation::kAuto; }
+// Of a render of `target` samples: at most half of them, and none of one sample. A coarse one is no part of the image
+// and is to cost little: at most a thirty-second of the render. It grows like the root of the samples: what a wrong
+// choice costs grows with the samples that follow it, and falls with the pilot's.
 uint32_t pilotOf(const RenderSettings& s, uint32_t target) {
-  if (s.allocation != Allocation::kAuto) return std::min(s.pilotSpp, target / 2);
+  if (!coarse(s)) return std::min(s.pilotSpp, target / 2);
   constexpr double kUsual = 64;  // samples for which pilotSpp is meant
   const double growth = s.seconds > 0 ? 1 : std::max(1.0, std::sqrt(target / kUsual));
-  const double most = std::min(std::max(target / kWhole, 1u), target / 2);
-  return static_cast<uint32_t>(std::min(s.pilotSpp * growth, most));
+  const uint32_t most = target / kLeastForPilot;
+  return static_cast<uint32_t>(std::min(s.pilotSpp * growth, double(most)));
 }
 
 // Calls a function every quarter of a second from a thread of its own, until finished or destroyed.
@@ -72,8 +77,8 @@ class Ticker {
 // One render in progress: passes over the whole image, each adding the same number of camera samples to every pixel.
 class Run {
  public:
-  Run(const RenderSettings& settings, const RenderObserver& observer, const RenderSetup& setup, FilmBuffer& film)
-      : settings_(settings), observer_(observer), setup_(setup), film_(film), start_(now()) {}
+  Run(const RenderSettings& settings, const RenderObserver& observer, const RenderSetup& setup)
+      : settings_(settings), observer_(observer), setup_(setup), start_(now()) {}
 
   Clocks clocks() const { return now() - start_; }
   double seconds() const { return clocks().wall; }
@@ -83,43 +88,43 @@ class Run {
   // Adds `samples` to every pixel. A stop that keeps the image lets the pass end; one that discards it does not: false.
   bool pass(uint32_t samples, Pilot* pilot) {
     std::atomic<int> done{0};
-    const double total = tilesOf(film_);
+    const double total = tilesOf(*film_);
     Ticker ticker([&] { report(pilot != nullptr, samples * done.load() / total); });
     renderTiles(
-        setup_, film_, samples, pilot, [&]() -> Counts& { return counts_.local(); }, done,
+        setup_, *film_, samples, pilot, [&]() -> Counts& { return counts_.local(); }, done,
         [&] { return stop() == Stop::kDiscard; });
     ticker.finish();  // it reads what is written now
     if (stop() == Stop::kDiscard) return false;
-    film_.samples += samples;
+    film_->samples += samples;
     return true;
   }
 
   // Passes until `target` samples or, with a time limit, until the next pass would end too late.
   void until(uint32_t target, Pilot* pilot) {
     uint32_t chunk = 1;
-    while (film_.samples < target && !stopped()) {
+    const double limit = settings_.seconds * (apart_ > 0 && pilot != nullptr ? kPilotTime : 1);
+    while (film_->samples < target && !stopped()) {
       const double before = seconds();
-      chunk = std::min(chunk, target - film_.samples);
+      chunk = std::min(chunk, target - film_->samples);
       if (observer_.checkpoint) {
-        const uint32_t next = film_.samples == 0 ? 1 : 2 * std::bit_floor(film_.samples);
-        chunk = std::min(chunk, next - film_.samples);
+        const uint32_t next = film_->samples == 0 ? 1 : 2 * std::bit_floor(film_->samples);
+        chunk = std::min(chunk, next - film_->samples);
       }
       if (!pass(chunk, pilot)) return;
       const double after = seconds(), perSample = (after - before) / chunk;
       report(pilot != nullptr, 0);
-      if (pilot == nullptr || extra_ == 0) checkpoint();
-      if (observer_.image && pilot == nullptr) observer_.image(film_);
-      if (settings_.seconds > 0 && after + perSample > settings_.seconds) return;
+      if (pilot == nullptr || apart_ == 0) checkpoint();
+      if (observer_.image && pilot == nullptr) observer_.image(*film_);
+      if (limit > 0 && after + perSample > limit) return;
       // passes of about half a second: long enough to cost nothing, short enough to watch
       double next = std::min({2.0 * chunk, std::max(1.0, 0.5 / std::max(perSample, 1e-9)), 4096.0});
-      if (settings_.seconds > 0) next = std::min(next, std::max(1.0, (settings_.seconds - after) / perSample));
+      if (limit > 0) next = std::min(next, std::max(1.0, (limit - after) / perSample));
       chunk = static_cast<uint32_t>(next);
     }
   }
 
-  // Before a pilot of `samples` that are not to be part of the image, and when they leave it.
-  void expectExtra(uint32_t samples) { extra_ = samples; }
-  void throwAway() { film_ = setup_.film(); }
+  // What follows is added to this film. apart: samples of a coarse pilot, on a film of its own, before the image's.
+  void onto(FilmBuffer& film, uint32_t apart) { film_ = &film, apart_ = apart; }
 
   Counts counts() {
     Counts sum;
@@ -132,9 +137,9 @@ class Run {
 
   // Tells the observer, whose time does not count.
   void checkpoint() {
-    if (!observer_.checkpoint || (!std::has_single_bit(film_.samples) && film_.samples != settings_.spp)) return;
+    if (!observer_.checkpoint || (!std::has_single_bit(film_->samples) && film_->samples != settings_.spp)) return;
     const Clocks before = now();
-    observer_.checkpoint(film_, before - start_, counts());
+    observer_.checkpoint(*film_, before - start_, counts());
     start_ += now() - before;
   }
 
@@ -143,12 +148,13 @@ class Run {
     if (!observer_.progress) return;
     Progress p;
     p.pilot = pilot;
-    p.samples = film_.samples;
+    p.samples = film_->samples;
     p.of = settings_.seconds > 0 ? 0 : settings_.spp;
     p.seconds = seconds();
-    const double done = double(film_.samples) + (pilot ? 0 : extra_);
-    p.fraction = settings_.seconds > 0 ? std::min(1.0, p.seconds / settings_.seconds)
-                                       : (done + partial) / (double(settings_.spp) + extra_);
+    const double extra = apart_ * kCoarseSample, here = double(film_->samples) + partial;
+    const double done = !pilot ? here + extra : apart_ > 0 ? here * kCoarseSample : here;
+    p.fraction =
+        settings_.seconds > 0 ? std::min(1.0, p.seconds / settings_.seconds) : done / (double(settings_.spp) + extra);
     p.left = settings_.seconds > 0 ? std::max(0.0, settings_.seconds - p.seconds)
              : p.fraction > 0      ? p.seconds * (1 - p.fraction) / p.fraction
                                    : 0;
@@ -158,11 +164,13 @@ class Run {
   const RenderSettings& settings_;
   const RenderObserver& observer_;
   const RenderSetup& setup_;
-  FilmBuffer& film_;
-  uint32_t extra_ = 0;  // samples that are not part of the image
+  FilmBuffer* film_ = nullptr;
+  uint32_t apart_ = 0;
   Clocks start_;
   tbb::enumerable_thread_specific<Counts> counts_;
 };
+
+constexpr const char* kNoPilot = "too few samples for a pilot: counts are equal";
 
 SampleCost countedCost(const Counts& counts, int samplesPerHit) {
   SampleCost cost;
@@ -175,6 +183,8 @@ SampleCost countedCost(const Counts& counts, int samplesPerHit) {
 
 FilmBuffer renderInArena(const BuiltScene& built, const RenderSettings& settings, Statistics& stats,
                          const RenderObserver& observer) {
+  const Film& frame = built.scene.film;
+  requireMemory(frame.x1 - frame.x0, frame.y1 - frame.y0, settings);
   RenderSetup setup(built, settings);
   stats.buildSeconds = built.seconds;
   stats.needs = setup.needs;
@@ -185,43 +195,57 @@ FilmBuffer renderInArena(const BuiltScene& built, const RenderSettings& settings
   stats.emissiveTriangles = built.emitters.emissiveTriangles();
   stats.threads = threadsOf(settings.threads);
   stats.techniques = setup.techniques;
-  const uint32_t target = targetOf(settings), pilotSpp = pilotOf(settings, target), apart = pilotApart(settings);
-  stats.allocated = needsMoments(settings.allocation) && (setup.needs & kNeedsAllocation) != 0 && pilotSpp > 0;
-  if (needsMoments(settings.allocation) && (setup.needs & kNeedsAllocation) != 0 && pilotSpp == 0)
-    stats.leftOut.emplace_back("no samples for a pilot: counts are equal");
+  const uint32_t target = targetOf(settings), pilotSpp = pilotOf(settings, target);
+  const bool wanted = needsMoments(settings.allocation) && (setup.needs & kNeedsAllocation) != 0;
+  stats.allocated = wanted && pilotSpp > 0;
+  if (wanted && pilotSpp == 0) stats.leftOut.emplace_back(kNoPilot);
 
-  FilmBuffer buffer = setup.film();
-  Run run(settings, observer, setup, buffer);
+  Run run(settings, observer, setup);
   if (observer.started) observer.started(stats);
   SampleCost& cost = setup.input.cost;
-  const Sampler own = setup.input.sampler;
-  std::vector<PixelFractions> perPixel;
-  if (stats.allocated) {
-    if (settings.costFrom == CostFrom::kMeasured) cost = measureCost(built, settings).perSample;
-    if (apart > 0) {
-      run.expectExtra(apart);
-      // fractions must not depend on the points that they are used for, nor a hit's two samples on each other
-      setup.drawFrom({SamplerType::kIndependent, ~settings.seed, 1});
-    }
-    Pilot pilot(buffer.width, buffer.height, settings.allocation);
+  FractionsMap map;
+  FilmBuffer buffer;
+  const auto allocateFrom = [&](FilmBuffer& film, int side) {
+    Pilot pilot(film.width, film.height, settings.allocation);
     if (settings.costFrom == CostFrom::kRays) {
       run.until(1, &pilot);
       cost = countedCost(run.counts(), settings.samplesPerHit);
     }
     run.until(pilotSpp, &pilot);
-    if (!run.stopped()) {
-      perPixel = pilot.fractions(settings.allocation, settings.integrand, setup.techniques, settings.minFraction,
-                                 setup.input.candidates, cost);
-      setup.input.perPixel = &perPixel;
-    }
-    stats.cost = cost;
-    const Clocks pilotTime = run.clocks();
-    stats.pilotSeconds = pilotTime.wall;
-    stats.pilotCpuSeconds = pilotTime.cpu;
-    const bool tooLong = settings.seconds > 0 && pilotTime.wall * kWhole > settings.seconds;
-    stats.pilotKept = apart == 0 || run.stopped() || tooLong;
+    if (run.stopped()) return;
+    map = {side, film.width,
+           pilot.fractions(settings.allocation, settings.integrand, setup.techniques, settings.minFraction,
+                           setup.input.candidates, cost)};
+    setup.input.perPixel = &map;
+  };
+  const auto pilotDone = [&] {
+    const Clocks time = run.clocks();
+    stats.cost = cost, stats.pilotSeconds = time.wall, stats.pilotCpuSeconds = time.cpu;
+  };
+  if (stats.allocated && settings.costFrom == CostFrom::kMeasured) cost = measureCost(built, settings).perSample;
+  if (stats.allocated && coarse(settings)) {
+    FilmBuffer film = setup.film(kCoarse);
+    run.onto(film, pilotSpp);
+    // fractions must not depend on the points that they are used for, nor a hit's two samples on each other
+    const Sampler own = setup.input.sampler;
+    setup.drawFrom({SamplerType::kIndependent, ~settings.seed, 1});
+    setup.input.side = kCoarse;
+    allocateFrom(film, kCoarse);
+    setup.input.side = 1;
     setup.drawFrom(own);
-    if (!stats.pilotKept) run.throwAway();
+    pilotDone();
+    const double samples = settings.seconds * kCoarseSample * film.samples / stats.pilotSeconds;
+    if (settings.seconds > 0 && samples < kLeastForPilot) {
+      setup.input.perPixel = nullptr, stats.allocated = false;
+      stats.leftOut.emplace_back(kNoPilot);
+    }
+  }
+  buffer = setup.film();
+  run.onto(buffer, stats.allocated && coarse(settings) ? pilotSpp : 0);
+  if (stats.allocated && !coarse(settings)) {
+    stats.pilotKept = true;
+    allocateFrom(buffer, 1);
+    pilotDone();
   }
   run.until(target, nullptr);
   const Clocks time = run.clocks();
@@ -233,7 +257,9 @@ FilmBuffer renderInArena(const BuiltScene& built, const RenderSettings& settings
 
 }  // namespace
 
-uint32_t pilotApart(const RenderSettings& s) { return s.allocation == Allocation::kAuto ? pilotOf(s, targetOf(s)) : 0; }
+double pilotApart(const RenderSettings& s) {
+  return coarse(s) ? double(pilotOf(s, targetOf(s))) / (kCoarse * kCoarse) : 0;
+}
 
 FilmBuffer render(const BuiltScene& built, const RenderSettings& settings, Statistics& statistics,
                   const RenderObserver& observer) {

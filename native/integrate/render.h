@@ -25,7 +25,7 @@ std::string_view name(FilterType);
 enum class CostFrom : uint8_t { kRays, kGiven, kMeasured };
 
 struct RenderSettings {
-  Allocation allocation = Allocation::kSecondMoment;
+  Allocation allocation = Allocation::kAuto;
   std::optional<Weights> weights;  // none: what the paper pairs with the allocation
   Integrand integrand = Integrand::kSplit;
   Integrator integrator = Integrator::kPath;
@@ -33,7 +33,7 @@ struct RenderSettings {
   uint32_t spp = 64;   // camera samples per pixel in the image, the pilot's included unless it is apart (pilotApart)
   double seconds = 0;  // > 0: stop after this time instead
   int samplesPerHit = 3;
-  uint32_t pilotSpp = 4;
+  uint32_t pilotSpp = 4;  // camera samples of the pilot per pixel, of `auto` per 2 x 2 pixels
   float minFraction = 0.1f;
   CostFrom costFrom = CostFrom::kRays;  // of samples, for `auto`
   Fractions cost{1, 1, 1};              // of a lobe, cosine and light sample, where it is given
@@ -45,10 +45,10 @@ struct RenderSettings {
   Weights weightRule() const { return weights.value_or(paperWeights(allocation)); }
 };
 
-// Camera samples per pixel of a pilot that is not part of the image: that of `auto`; 0 where it is. The evenness of
-// Sobol's points is that of all points of a technique: a few of other weights undo it, and where the light is smooth,
-// these are most of the error.
-uint32_t pilotApart(const RenderSettings&);
+// Camera samples per pixel of a pilot that is not part of the image: that of `auto`, which is coarse; 0 where it is.
+// The evenness of Sobol's points is that of all points of a technique: a few of other weights undo it, and where the
+// light is smooth, these are most of the error.
+double pilotApart(const RenderSettings&);
 
 struct Statistics {
   double buildSeconds = 0, pilotSeconds = 0, renderSeconds = 0;  // wall; render excludes the pilot

@@ -85,9 +85,9 @@ RenderSetup::RenderSetup(const BuiltScene& built, const RenderSettings& s)
             built.scene.film.y0},
       kernel(tileKernel(kernelNeeds)) {}
 
-FilmBuffer RenderSetup::film() const {
+FilmBuffer RenderSetup::film(int side) const {
   const Film& f = world_.scene.film;
-  return {f.x1 - f.x0, f.y1 - f.y0};
+  return {(f.x1 - f.x0 + side - 1) / side, (f.y1 - f.y0 + side - 1) / side};
 }
 
 int tilesOf(const FilmBuffer& film) { return tilesAcross(film.width) * tilesAcross(film.height); }

@@ -30,7 +30,7 @@ struct RenderSetup {
   RenderSetup(const RenderSetup&) = delete;
   RenderSetup& operator=(const RenderSetup&) = delete;
 
-  FilmBuffer film() const;  // an empty one, of the border's size
+  FilmBuffer film(int side = 1) const;  // an empty one, of the border's size; side: of its pixels, in the image's
   // Instead of the settings' own points.
   void drawFrom(const Sampler& sampler) { sampler_ = sampler; }
 

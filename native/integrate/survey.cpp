@@ -10,9 +10,9 @@ float ratioOf(const Moments& m, TechniqueMask used) {
   float least = 0, most = 0;
   int n = 0;
   for (int t = 0; t < kTechniques; ++t)
-    if ((used >> t & 1u) != 0 && m.second[t] > 0) {
-      least = n == 0 ? m.second[t] : std::min(least, m.second[t]);
-      most = std::max(most, m.second[t]);
+    if ((used >> t & 1u) != 0 && m.second(t) > 0) {
+      least = n == 0 ? m.second(t) : std::min(least, m.second(t));
+      most = std::max(most, m.second(t));
       ++n;
     }
   return n > 1 ? most / least : 0;
@@ -45,7 +45,7 @@ Survey survey(const BuiltScene& built, const RenderSettings& settings, uint32_t 
         SurveyPixel& to = result.pixels[static_cast<size_t>(film.height - 1 - y) * static_cast<size_t>(film.width) +
                                         static_cast<size_t>(x)];
         if (p.surface.material < 0) continue;
-        const HitMoments m = pilot.smoothed(x, y).first;
+        const HitMoments m = pilot.smoothed(pilot.moments, x, y);
         const TechniqueMask mask = setup.techniques & p.techniques;
         to = {p.surface.material, mask, p.surface.placement,
               joint ? ratioOf(m.specular, mask)
@@ -55,9 +55,9 @@ Survey survey(const BuiltScene& built, const RenderSettings& settings, uint32_t 
           if ((mask >> t & 1u) == 0) continue;
           pixelsWith[t] += 1;
           for (const Moments* each : {&m.specular, &m.diffuse}) {
-            if (!(each->hits > 0) || !(each->second[t] > 0)) continue;
+            if (!(each->hits > 0) || !(each->second(static_cast<int>(t)) > 0)) continue;
             const double mean = (double(each->mean[0]) + each->mean[1] + each->mean[2]) / each->hits;
-            const double second = double(each->second[t]) / each->hits;
+            const double second = double(each->second(static_cast<int>(t))) / each->hits;
             result.secondMoment[t] += second;
             result.variance[t] += std::max(0.0, second - mean * mean);
           }

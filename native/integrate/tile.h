@@ -13,8 +13,8 @@ namespace wardmis {
 // Radiance along one camera ray.
 template <uint32_t N>
 Rgb cameraSample(const KernelInput& in, const Ray& ray, uint32_t pixelKey, uint32_t sample,
-                 const PixelFractions* allocated, Pixel& pixel, PilotPixel* pilot, CandidateSums* candidates,
-                 Counts& counts) {
+                 const PixelFractions* allocated, Pixel& pixel, PilotPixel* pilot, HitMoments* moments,
+                 CandidateSums* candidates, Counts& counts) {
   const RenderScene& world = in.scene;
   ++counts.cameraRays;
   const Hit hit = world.accel.intersect(ray);
@@ -67,12 +67,12 @@ Rgb cameraSample(const KernelInput& in, const Ray& ray, uint32_t pixelKey, uint3
   std::optional<CandidateHit> candidate;
   if (pilot != nullptr && follows) {
     if (candidates != nullptr) candidate.emplace(in.candidates.of(mask));
-    record.emplace(HitRecord{pilot->moments, candidate ? &*candidate : nullptr});
+    record.emplace(HitRecord{moments, candidate ? &*candidate : nullptr});
   }
   sum += estimate<N>(world, in.sampler, x, plan, counts, record ? &*record : nullptr, more);
   for (size_t i = 0; i < kTechniques; ++i) pixel.techniques[i] += static_cast<uint32_t>(counts.samples[i] - before[i]);
   if constexpr ((N & kNeedsBounces) != 0) {
-    const Fractions n = candidate ? Mixture(plan.fractions, plan.samples, plan.weights).n : Fractions{};
+    const Fractions n = record ? Mixture(plan.fractions, plan.samples, plan.weights).n : Fractions{};
     for (int k = 0; k < more.count; ++k) {
       const Continuation& c = more.list[k];
       const uint64_t rays = counts.rays();
@@ -81,8 +81,9 @@ Rgb cameraSample(const KernelInput& in, const Ray& ray, uint32_t pixelKey, uint3
                         sample * static_cast<uint32_t>(plan.samples) + static_cast<uint32_t>(k), c, in.depth, counts);
       sum += value;
       counts.following[c.technique] += counts.rays() - rays;
-      if (candidate)
-        candidate->add(luminance(value) / c.scale, c.p, n, techniquesFor(plan.integrand, c.technique), c.set);
+      if (record)
+        record->add(plan.integrand == Integrand::kSplit && c.technique == kCosine, luminance(value) / c.scale, c.p, n,
+                    techniquesFor(plan.integrand, c.technique), c.set);
     }
   }
   if (candidate) candidate->addTo(*candidates, in.cost);
@@ -94,19 +95,22 @@ void renderTile(const KernelInput& in, const Tile& tile, FilmBuffer& film, Pilot
   const float exposure = in.scene.scene.film.exposure;
   for (int y = tile.y0; y < tile.y1; ++y)
     for (int x = tile.x0; x < tile.x1; ++x) {
-      const int px = x + in.x0, py = y + in.y0;
+      const int px = x * in.side + in.x0, py = y * in.side + in.y0;
+      const auto side = static_cast<float>(in.side);
       const uint32_t key = in.sampler.pixelKey(static_cast<uint32_t>(px), static_cast<uint32_t>(py));
       const size_t index = static_cast<size_t>(y) * static_cast<size_t>(film.width) + static_cast<size_t>(x);
       Pixel& pixel = film.pixels[index];
-      const PixelFractions* allocated = in.perPixel != nullptr ? &(*in.perPixel)[index] : nullptr;
+      const PixelFractions* allocated = in.perPixel != nullptr ? &in.perPixel->at(x, y) : nullptr;
       CandidateSums* candidates = pilot != nullptr && !pilot->candidates.empty() ? &pilot->candidates[index] : nullptr;
+      HitMoments* moments = pilot != nullptr && !pilot->moments.empty() ? &pilot->moments[index] : nullptr;
       PilotPixel* pilotPixel = pilot != nullptr ? &pilot->pixels[index] : nullptr;
       for (uint32_t s = tile.firstSample; s < tile.firstSample + tile.samples; ++s) {
         const Vec2f offset = in.filter.sample(in.sampler.get2D(key, kFilmPoint, s));
         const Vec2f lens = in.camera.needsLens() ? in.sampler.get2D(key, kLensPoint, s) : Vec2f{};
-        const Ray ray =
-            in.camera.ray(static_cast<float>(px) + 0.5f + offset.x, static_cast<float>(py) + 0.5f + offset.y, lens);
-        const Rgb value = cameraSample<N>(in, ray, key, s, allocated, pixel, pilotPixel, candidates, counts) * exposure;
+        const Ray ray = in.camera.ray(static_cast<float>(px) + side * (0.5f + offset.x),
+                                      static_cast<float>(py) + side * (0.5f + offset.y), lens);
+        const Rgb value =
+            cameraSample<N>(in, ray, key, s, allocated, pixel, pilotPixel, moments, candidates, counts) * exposure;
         if (counts.rare.admit(value)) pixel.add(value);
       }
     }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "mis/adaptive.h"
 
@@ -10,50 +11,87 @@ namespace wardmis {
 
 namespace {
 
-// What the rule reads of technique i must be a number above zero: a technique that has only seen zeros has no variance,
-// which would give it everything.
-bool says(Allocation rule, const Moments& m, int i) {
-  const auto usable = [&](float x) { return x > 0 && std::isfinite(x / m.hits); };
-  switch (rule) {
-    case Allocation::kSecondMoment:
-      return usable(m.second[i]);
-    case Allocation::kInverseVariance:
-      return usable(m.second[i]) && usable(m.mean[i]);
-    case Allocation::kRepresentativity:
-      return usable(m.mean[i]);
-    case Allocation::kEqualised:
-      return usable(m.square[i]);
-    default:
-      return usable(m.square[i]) && std::isfinite(m.mean[i] / m.hits);
+bool number(double x) { return x > 0 && std::isfinite(x); }
+
+// The techniques of a mask, in their order.
+struct Techniques {
+  std::array<int, kTechniques> which{};
+  int count = 0;
+
+  explicit Techniques(TechniqueMask mask) {
+    for (int i = 0; i < kTechniques; ++i)
+      if ((mask >> i & 1u) != 0) which[static_cast<size_t>(count++)] = i;
   }
+  int operator[](int k) const { return which[static_cast<size_t>(k)]; }
+};
+
+// From the moments of all light. False where they say nothing: what the rule reads of each technique must be a number
+// above zero, since a technique that has only seen zeros has no variance, which would give it everything.
+bool fromAll(Allocation rule, const Moments& m, const Techniques& t, Fractions& a) {
+  IntegrandMoments known;
+  known.techniques = t.count;
+  const double hits = double(m.hits);
+  for (int k = 0; k < t.count; ++k) {
+    const auto at = static_cast<size_t>(k), i = static_cast<size_t>(t[k]);
+    const double mean = double(m.mean[i]) / hits, square = double(m.square[i]) / hits;
+    if (!(rule == Allocation::kRepresentativity ? number(mean) : number(square) && std::isfinite(mean))) return false;
+    known.mean[at] = mean, known.square[at] = square, known.variance[at] = std::max(0.0, square - mean * mean);
+  }
+  const Densities shares = fractions(rule, known);
+  for (int k = 0; k < t.count; ++k) a[static_cast<size_t>(t[k])] = static_cast<float>(shares[static_cast<size_t>(k)]);
+  return true;
+}
+
+// Adds one part's demand for samples, the root of what its second moment then is, times its fractions by the rule.
+// False where its moments say nothing.
+bool demand(Allocation rule, const PartMoments& part, double hits, const Techniques& t, Densities& a) {
+  constexpr double kLeast = 1e-3;  // of m^2: of a pilot, m^2 may come out below mu^2; then not infinitely good
+  if (part.integral == 0 || t.count == 0) return true;
+  const double mu = double(part.integral) / hits;
+  IntegrandMoments known;
+  known.techniques = t.count;
+  for (int k = 0; k < t.count; ++k) {
+    const double second = double(part.second[static_cast<size_t>(t[k])]) / hits;
+    if (!number(second)) return false;
+    known.logSecond[static_cast<size_t>(k)] = std::log(second);
+    known.variancePrim[static_cast<size_t>(k)] = std::max(second - mu * mu, kLeast * second);
+  }
+  const Densities shares = fractions(rule, known);
+  double second = 0;  // integral f^2/q: at most this, by Jensen's inequality, and about that of equal counts
+  for (int k = 0; k < t.count; ++k) second += shares[static_cast<size_t>(k)] * known.second(k);
+  second = std::min(second, t.count * double(part.square) / hits);
+  if (!number(second)) return false;
+  for (int k = 0; k < t.count; ++k) a[static_cast<size_t>(t[k])] += std::sqrt(second) * shares[static_cast<size_t>(k)];
+  return true;
 }
 
 }  // namespace
 
 Fractions allocate(Allocation rule, const Moments& m, TechniqueMask used, float minimum) {
-  const int n = std::popcount(used);
-  Fractions a{};
-  std::array<int, kTechniques> which{};  // the techniques used
-  for (int i = 0, k = 0; i < kTechniques; ++i)
-    if ((used >> i & 1u) != 0) which[k++] = i;
-  for (int k = 0; k < n; ++k) a[which[k]] = 1.0f / static_cast<float>(n);
-  if (n == 0 || !needsMoments(rule) || !(m.hits > 0)) return a;
+  constexpr TechniqueMask light = maskOf(kLight);
+  const Techniques t(used);
+  Fractions equal{};
+  for (int k = 0; k < t.count; ++k) equal[static_cast<size_t>(t[k])] = 1.0f / static_cast<float>(t.count);
+  if (t.count == 0 || !needsMoments(rule) || !(m.hits > 0)) return equal;
 
-  IntegrandMoments known;
-  known.techniques = n;
-  const double hits = m.hits;
-  for (int k = 0; k < n; ++k) known.integral += m.mean[which[k]] / hits;
-  for (int k = 0; k < n; ++k) {
-    const int i = which[k];
-    if (!says(rule, m, i)) return a;
-    const double mean = m.mean[i] / hits, square = m.square[i] / hits, second = m.second[i] / hits;
-    known.mean[k] = mean, known.square[k] = square, known.variance[k] = std::max(0.0, square - mean * mean);
-    known.logSecond[k] = std::log(second);
-    // of a pilot, m^2 may come out below mu^2: then a thousandth of m^2, not infinitely good
-    known.variancePrim[k] = std::max(second - known.integral * known.integral, 1e-3 * second);
+  Fractions a{};
+  if (rule == Allocation::kSecondMoment || rule == Allocation::kInverseVariance) {
+    Densities wanted{};
+    const double hits = double(m.hits);
+    if (!demand(rule, m.shared, hits, t, wanted) ||
+        !demand(rule, m.unaimed, hits, Techniques(used & static_cast<TechniqueMask>(~light)), wanted) ||
+        !demand(rule, m.exclusive, hits, Techniques(used & light), wanted))
+      return equal;
+    const double sum = wanted[0] + wanted[1] + wanted[2];
+    if (!number(sum)) return equal;
+    for (size_t i = 0; i < kTechniques; ++i) a[i] = static_cast<float>(wanted[i] / sum);
+  } else if (!fromAll(rule, m, t, a)) {
+    return equal;
   }
-  const Densities shares = clampFractions(fractions(rule, known), n, double(minimum));
-  for (int k = 0; k < n; ++k) a[which[k]] = static_cast<float>(shares[k]);
+  Densities shares{};
+  for (int k = 0; k < t.count; ++k) shares[static_cast<size_t>(k)] = double(a[static_cast<size_t>(t[k])]);
+  shares = clampFractions(shares, t.count, double(minimum));
+  for (int k = 0; k < t.count; ++k) a[static_cast<size_t>(t[k])] = static_cast<float>(shares[static_cast<size_t>(k)]);
   return a;
 }
 

@@ -4,17 +4,32 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mis/adaptive.h"
 #include "mis/allocation.h"
 
 namespace wardmis {
 
+namespace {
+
+// Fractions proportional to 1, 4 or 16, each once, the equal ones first.
+std::array<Fractions, kCandidates> proportions() {
+  constexpr float kLevels[] = {1, 4, 16};
+  std::array<Fractions, kCandidates> list;
+  size_t count = 0;
+  for (float c : kLevels)
+    for (float b : kLevels)
+      for (float a : kLevels)
+        if (std::min({a, b, c}) == 1) list[count++] = {a / (a + b + c), b / (a + b + c), c / (a + b + c)};
+  return list;
+}
+
+}  // namespace
+
 CandidateLists::CandidateLists(int samplesPerHit) {
   constexpr uint32_t kParts = 4;  // of a sample
-  const std::vector<Densities> three = candidates(kTechniques, 4, 2);
+  const std::array<Fractions, kCandidates> three = proportions();
   for (unsigned mask = 1; mask <= kAllTechniques; ++mask)
     for (size_t c = 0; c < kCandidates; ++c) {
-      Fractions a = restrict({float(three[c][0]), float(three[c][1]), float(three[c][2])}, TechniqueMask(mask));
+      Fractions a = restrict(three[c], TechniqueMask(mask));
       if (c > 0) a = wholeCounts(a, samplesPerHit, kParts);
       for (size_t k = 0; k < kTechniques; ++k) {
         const float n = a[k] * static_cast<float>(samplesPerHit), part = n - std::floor(n + 1e-4f);
@@ -26,8 +41,7 @@ CandidateLists::CandidateLists(int samplesPerHit) {
 
 Fractions chooseCandidate(const CandidateSums& sums, const GainScatter& surface, const CandidateList& list,
                           const SampleCost& cost) {
-  constexpr float kSigmas = 2;     // standard errors of the gain
-  constexpr float kLeastHits = 8;  // fewer say nothing of their own noise
+  constexpr float kSigmas = 2;  // standard errors of the gain
   constexpr double kSurfaceHits = 16;
   if (!(sums.hits >= kLeastHits)) return list.at(0);
   const auto objective = [&](int c) {

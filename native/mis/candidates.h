@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `auto` in a render: of a fixed set of fractions, the one whose predicted variance x cost over the pilot's samples is
-// the least. The candidates' sums are made while the pilot runs, so that its samples need not be kept.
+// `auto`, of a render and of the study: of a fixed set of fractions, the one whose predicted variance x cost over the
+// pilot's samples is the least. The candidates' sums are made while the pilot runs, so that its samples need not be
+// kept.
 #pragma once
 
 #include <numeric>
@@ -133,6 +134,8 @@ class CandidateHit {
   const CandidateList& list_;
   float value_[kCandidates]{}, mean_[kSets][kTechniques - 1][kCandidates]{}, integral_[kSets]{};
 };
+
+inline constexpr int kLeastHits = 8;  // fewer say nothing of their own noise
 
 // The candidate whose gain in predicted variance x cost over equal counts, less two of the gain's standard errors, is
 // the largest; equal counts where none is above nothing, or where hits are too few to tell. The errors are those of

@@ -179,7 +179,8 @@ std::vector<std::string> finding(const json& r) {
     if (ratio.is_object() && (sooner || ratio["high"] < 1 - kAlike || ratio["low"] > 1 + kAlike))
       errors.push_back(fmt::format(
           "{} {}{}", name, interval(ratio),
-          c["pilot_apart"] > 0 ? fmt::format(" (its pilot of {} more not counted)", c["pilot_apart"].get<int>()) : ""));
+          c["pilot_apart"] > 0 ? fmt::format(" (its pilot of {:.3g} more not counted)", c["pilot_apart"].get<double>())
+                               : ""));
     if (!sooner) continue;
     // a squared error is that of the few worst pixels; what most pixels show may say otherwise
     const json &own = c["curve"].back(), &other = baseline["curve"].back();

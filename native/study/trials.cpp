@@ -14,6 +14,7 @@
 
 #include "math/error.h"
 #include "mis/adaptive.h"
+#include "mis/candidates.h"
 
 namespace wardmis {
 
@@ -25,7 +26,6 @@ size_t at(int i) { return static_cast<size_t>(i); }
 
 constexpr int kPasses = 4;             // of progressive strategies
 constexpr double kPilotShare = 0.125;  // of the samples of pilot strategies
-constexpr int kLeastPilot = 8;         // samples of each technique: fewer have no spread to speak of
 constexpr double kLeastLearnt = 0.02;  // fraction of any technique, where fractions follow samples
 
 // The samples of one trial.
@@ -167,18 +167,42 @@ double progressive(const Strategy& s, const Trial& t, int samples, Counts& last)
   return sum / total(done);
 }
 
+// The choice of a render's `auto`, from pairs of each technique's samples as it has them at a hit.
+Densities chosen(const Trial& t, int pairs, int rest, const Densities* cost) {
+  const CandidateLists lists(rest);
+  const auto mask = static_cast<TechniqueMask>((1u << t.techniques) - 1);
+  const CandidateList& list = lists.of(mask);
+  Fractions n{};
+  SampleCost price;
+  for (int i = 0; i < t.techniques; ++i) {
+    n[at(i)] = kSets;
+    if (cost != nullptr) price.technique[at(i)] = static_cast<float>((*cost)[at(i)]);
+  }
+  CandidateSums sums;
+  for (int pair = 0; pair < pairs; ++pair) {
+    CandidateHit hit(list);
+    for (int i = 0; i < t.techniques; ++i)
+      for (int set = 0; set < kSets; ++set) {
+        const int j = kSets * pair + set;
+        const Densities p = t.p(i, j);
+        hit.add(static_cast<float>(t.f(i, j)), {float(p[0]), float(p[1]), float(p[2])}, n, mask, set);
+      }
+    hit.addTo(sums, price);
+  }
+  GainScatter all;
+  const Fractions a = chooseCandidate(sums, all += sums, list, price);
+  return {double(a[0]), double(a[1]), double(a[2])};
+}
+
+// Fewer samples than make a pilot of kLeastHits hits the smaller half are equal counts.
 double fromPilot(const Trial& t, int samples, const Densities* cost, Counts& last) {
   const int n = t.techniques;
-  const int each = std::max(kLeastPilot, static_cast<int>(samples * kPilotShare / n));
+  const int pairs = std::max(kLeastHits, static_cast<int>(samples * kPilotShare / (kSets * n)));
+  const int each = kSets * pairs, rest = samples - n * each;
+  if (rest < n * each) return balance(t, {}, last = wholeCounts(equalFractions(n), n, samples));
   Counts pilot{};
   std::fill_n(pilot.begin(), n, each);
-  const int rest = samples - n * each;
-  if (rest < n) {
-    Densities equal{};
-    std::fill_n(equal.begin(), n, 1.0 / n);
-    return balance(t, {}, last = wholeCounts(equal, n, samples));
-  }
-  last = wholeCounts(autoFractions(pooled(t, pilot), cost), n, rest);
+  last = wholeCounts(chosen(t, pairs, rest, cost), n, rest);
   return (balance(t, {}, pilot) * (n * each) + balance(t, pilot, last) * rest) / samples;
 }
 

@@ -126,6 +126,41 @@ class Files(CommandTest):
         self.assertEqual([p.name for p in self.folder.iterdir()], ["out.exr"])
         self.assertEqual(self.out.read_bytes(), b"old")
 
+    def test_frame_that_memory_does_not_hold(self):
+        """Refused with numbers before anything is drawn: 65536 x 65536 pixels, and what a limit of its own leaves."""
+        frame = "render", self.scene(), "-o", self.out, "--resolution"
+        limit = resource.RLIMIT_AS, (700_000_000, 700_000_000)
+        for options, says, more in (
+            (
+                ("65536x65536",),
+                ("65536 x 65536 pixels with 'auto' take 755.9 GB", "are free", "lower the resolution"),
+                {},
+            ),
+            (
+                ("3000x2000",),
+                ("1.1 GB of memory (176 bytes each)", "0."),
+                {"preexec_fn": lambda: resource.setrlimit(*limit)},
+            ),
+        ):
+            done = self.run_command(*frame, *options, code=5, **more)
+            for text in says:
+                self.assertIn(text, done.stderr)
+            self.assertFalse(self.out.exists())
+
+    def test_memory_of_a_pixel(self):
+        """`auto` takes at most 250 bytes a pixel in all; they were 643."""
+
+        def peak(size):
+            words = "render", self.scene(), "-o", self.out, "--resolution", size, "--spp", 16, "--integrator", "direct"
+            words += "--samples-per-hit", 1, "--allocation", "auto", "--threads", 2
+            process = subprocess.Popen([BINARY, *map(str, words)], stdout=subprocess.DEVNULL)
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+            self.assertEqual(process.returncode, 0)
+            return 1024 * usage.ru_maxrss
+
+        self.assertLess((peak("1000x600") - peak("100x60")) / (1000 * 600 - 100 * 60), 250)
+
     def test_paths_of_every_kind(self):
         place = self.folder / "Bilder für '東京' $HOME %04d"
         place.mkdir()
@@ -198,7 +233,8 @@ class Image(CommandTest):
 
     def test_statistics(self):
         file = self.folder / "stats.json"
-        self.render("--spp", "8", "--threads", "2", "--seed", "7", "--stats", file)
+        pilot = "--allocation", "second-moment"
+        self.render("--spp", "8", "--threads", "2", "--seed", "7", "--stats", file, *pilot)
         stats = json.loads(file.read_text())
         for key, parts in {
             "seconds": "read build pilot render write total",

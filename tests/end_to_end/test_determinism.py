@@ -6,7 +6,7 @@ import itertools
 import numpy as np
 from command import CommandTest, combined, same
 
-ALLOCATIONS = ("equal", "variance", "second-moment", "albedo")
+ALLOCATIONS = ("equal", "variance", "second-moment", "albedo", "auto")
 SAMPLERS = ("independent", "stratified", "sobol")
 
 
@@ -14,10 +14,10 @@ class Determinism(CommandTest):
     scenes = ("teapot", "veach")
 
     def image(self, name, *options):
-        """Rendered with 12 samples: a pilot, and what it allocates."""
+        """Rendered with 16 samples: a pilot, and what it allocates."""
         path = self.folder / f"{len(list(self.folder.iterdir()))}.exr"
         few = () if "--samples-per-hit" in options else ("--samples-per-hit", "4")
-        self.render("--spp", "12", *few, *map(str, options), scene=self.scene(name), out=path)
+        self.render("--spp", "16", *few, *map(str, options), scene=self.scene(name), out=path)
         return path
 
     def test_threads(self):

@@ -470,7 +470,7 @@
         table(title(of[0][field]), [["Configuration"], [at[0], "number"], [metricLabel(report.metric), "number"], ["Ratio", "number"]],
           of.map((c) => [namedBriefly(c), at[1](c[field], of[0][field]), interval(c[field].error), c === baseline ? "baseline" : ratio(c[field].ratio)])));
     };
-    const apart = configurations.filter((c) => c.pilot_apart > 0).map((c) => ` The pilot of ${c.name}, ${integer(c.pilot_apart)} camera samples per pixel more, is not in its image; its time and rays count.`).join("");
+    const apart = configurations.filter((c) => c.pilot_apart > 0).map((c) => ` The pilot of ${c.name}, ${brief(c.pilot_apart)} camera samples per pixel more, is not in its image; its time and rays count.`).join("");
     // where the metric leaves pixels out, the same with all of them
     const all = configurations.filter((c) => c.all_pixels);
     const whole = all.length ? h("div", {}, h("h3", {}, "With all pixels"),

@@ -83,10 +83,11 @@ Moments randomMoments(Random& random) {
   Moments m;
   m.hits = static_cast<float>(random.integer(1, 1000));
   for (size_t i = 0; i < 3; ++i) {
-    m.second[i] = m.hits * static_cast<float>(random.logUniform(1e-8, 1e8));
+    m.shared.second[i] = m.hits * static_cast<float>(random.logUniform(1e-8, 1e8));
     const double mean = random.logUniform(1e-3, 1), sigma2 = mean * mean * random.logUniform(1e-3, 1e3);
     m.mean[i] = m.hits * static_cast<float>(mean);
     m.square[i] = m.hits * static_cast<float>(mean * mean + sigma2);
+    m.shared.integral += m.mean[i], m.shared.square += m.square[i];
   }
   return m;
 }
@@ -134,8 +135,9 @@ TEST(Allocate, DoesNotDependOnTheScaleOfTheIntegrand) {
     for (Allocation rule : kMomentRules) {
       const Fractions a = allocate(rule, m, kAllTechniques, 0.1f);
       Moments bright = m;
+      bright.shared.integral *= 0x1p10f, bright.shared.square *= 0x1p20f;
       for (size_t i = 0; i < 3; ++i)
-        bright.second[i] *= 0x1p20f, bright.square[i] *= 0x1p20f, bright.mean[i] *= 0x1p10f;
+        bright.shared.second[i] *= 0x1p20f, bright.square[i] *= 0x1p20f, bright.mean[i] *= 0x1p10f;
       const Fractions b = allocate(rule, bright, kAllTechniques, 0.1f);
       for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], 1e-6);
     }
@@ -149,7 +151,7 @@ TEST(Allocate, EqualWhereTheMomentsSayNothing) {
   for (size_t i = 0; i < 3; ++i) {
     for (float bad : {0.0f, kNan, kInf, -kInf, -1.0f}) {
       Moments m = randomMoments(random);
-      m.second[i] = bad;
+      m.shared.second[i] = bad;
       EXPECT_TRUE(isEqual(allocate(Allocation::kSecondMoment, m, kAllTechniques, 0))) << "second " << bad;
       EXPECT_FALSE(isEqual(allocate(Allocation::kVariance, m, kAllTechniques, 0)));  // does not read it
       m = randomMoments(random);
@@ -176,7 +178,7 @@ TEST(Allocate, EqualWhereTheMomentsSayNothing) {
     EXPECT_TRUE(isEqual(allocate(Allocation::kVariance, m, kAllTechniques, 0)));
     // a technique out of use may hold anything
     m = randomMoments(random);
-    m.second[1] = m.square[1] = m.mean[1] = kNan;
+    m.shared.second[1] = m.square[1] = m.mean[1] = kNan;
     const Fractions a = allocate(rule, m, kSpecularTechniques, 0);
     EXPECT_EQ(a[1], 0);
     EXPECT_NEAR(sum(a), 1, 1e-6);
@@ -185,12 +187,54 @@ TEST(Allocate, EqualWhereTheMomentsSayNothing) {
   }
 }
 
+// A lamp that the light technique finds with three times the digits of the cosine technique, under light that it does
+// not aim at: blind to that light it got nearly all. Quadrature on [0, 1]: p_cosine = 1, p_light = 10 on [0, .1]; the
+// lamp is 10 there, the sky `sky` everywhere.
+TEST(Allocate, LightThatIsNotAimedAtKeepsItsTechnique) {
+  const auto fractionsUnder = [](Allocation rule, float sky) {
+    Moments m;
+    const Fractions n{0, 0.5f, 0.5f};
+    m.hits = 1;
+    constexpr int kNodes = 1000;
+    const auto add = [&](float f, float light) {  // weighted, so that the sum over the nodes is the integral
+      Moments one;
+      const float q = 0.5f + 0.5f * light;
+      one.add(f, {0, 1, light}, n, kDiffuseTechniques);
+      const auto scale = [&](PartMoments& part) {
+        for (float& x : part.second) x *= q / kNodes;
+        part.square *= q / kNodes, part.integral *= q / kNodes;
+      };
+      scale(one.shared), scale(one.unaimed);
+      for (size_t i = 0; i < 3; ++i) one.square[i] *= q / kNodes, one.mean[i] *= q / kNodes;
+      m += one;
+    };
+    for (int k = 0; k < kNodes; ++k) {
+      if (k < kNodes / 10) add(10, 10);
+      if (sky > 0) add(sky, 0);
+    }
+    return allocate(rule, m, kDiffuseTechniques, 0);
+  };
+  for (Allocation rule : {Allocation::kSecondMoment, Allocation::kInverseVariance}) {
+    const float none = fractionsUnder(rule, 0)[kCosine];
+    EXPECT_LT(none, 0.12f) << name(rule);
+    float last = none;
+    for (float sky : {0.1f, 1.0f, 10.0f, 100.0f}) {
+      const float cosine = fractionsUnder(rule, sky)[kCosine];
+      EXPECT_GT(cosine, last) << name(rule) << ' ' << sky;
+      last = cosine;
+    }
+    EXPECT_GT(fractionsUnder(rule, 1)[kCosine], 0.45f) << name(rule);  // as much light as the lamp's
+    EXPECT_GT(last, 0.95f) << name(rule);
+  }
+}
+
 TEST(Allocate, ExtremeMoments) {
   for (Allocation rule : kMomentRules) {
     for (float big : {1e30f, 3e38f}) {
       for (float small : {1e-45f, 1e-38f, 1e-30f}) {
         Moments m;
-        m.hits = 1, m.second = m.square = {small, big, big};
+        m.hits = 1, m.shared.second = m.square = {small, big, big};
+        m.shared.integral = small, m.shared.square = big;
         const Fractions a = allocate(rule, m, kAllTechniques, 0.1f);
         EXPECT_NEAR(sum(a), 1, 1e-5);
         for (float x : a) EXPECT_GE(x, 0.0999f);

@@ -173,13 +173,6 @@ TEST(Candidates, AnExpensiveTechniqueGetsLess) {
   EXPECT_LE(b[2], 0.1f);
 }
 
-// The study's own pilot: never worse than equal counts beyond its cost.
-TEST(AutoFractions, EqualWithoutPoints) {
-  Points none;
-  none.techniques = 2;
-  EXPECT_EQ(autoFractions(none, nullptr)[0], 0.5);
-}
-
 TEST(ClampFractions, RaisesAndKeepsTheSum) {
   const Densities a = clampFractions({0.98, 0.02, 0}, 3, 0.05);
   EXPECT_DOUBLE_EQ(a[0] + a[1] + a[2], 1);

@@ -33,7 +33,7 @@ void check(const WardCase& c, int perTechnique, uint64_t seed) {
     }
     ASSERT_EQ(m.hits, 16);
     for (size_t i = 0; i < static_cast<size_t>(c.techniques); ++i) {
-      second[i].add(double(m.second[i]) / 16);
+      second[i].add(double(m.second(static_cast<int>(i))) / 16);
       // sigma^2 about the known mean: the estimate is linear, so without bias
       const double mean = double(exact.mean[i]);
       variance[i].add(double(m.square[i]) / 16 - 2 * mean * double(m.mean[i]) / 16 + mean * mean);
@@ -42,7 +42,7 @@ void check(const WardCase& c, int perTechnique, uint64_t seed) {
   for (size_t i = 0; i < static_cast<size_t>(c.techniques); ++i) {
     const double sigma2 = c.techniques == 3 ? c.expect["sigma2_eq"][i].get<double>()
                                             : c.expect["sigma2_" + std::to_string(i + 1) + "_eq"].get<double>();
-    EXPECT_NEAR(second[i].mean(), double(exact.second[i]), 5 * second[i].error()) << "m^2 of " << i;
+    EXPECT_NEAR(second[i].mean(), double(exact.shared.second[i]), 5 * second[i].error()) << "m^2 of " << i;
     EXPECT_NEAR(variance[i].mean(), sigma2, 5 * variance[i].error()) << "sigma^2 of " << i;
     EXPECT_LT(second[i].error(), 0.1 * second[i].mean());  // the comparison says something
   }
@@ -71,11 +71,30 @@ TEST(Moments, OfThreeTechniques) {
 TEST(Moments, ZerosAndUnusedTechniquesAddNothing) {
   Moments m;
   m.add(0, {1, 1, 1}, {1, 1, 1}, kAllTechniques);
-  EXPECT_EQ(m.second, (Fractions{}));
-  m.add(2, {0, 0.5f, 7}, {4, 4, 4}, maskOf(kLobe) | maskOf(kCosine));  // the lobe's density has underflowed
-  EXPECT_EQ(m.second, (Fractions{0, 2 / 0.5f * 2 / (4 * 0.5f), 0}));
-  EXPECT_EQ(m.mean, (Fractions{0, 1, 0}));
-  EXPECT_EQ(m.square, (Fractions{0, 4, 0}));
+  EXPECT_EQ(m.shared.second, (Fractions{}));
+  m.add(2, {0.25f, 0.5f, 7}, {4, 4, 4}, maskOf(kLobe) | maskOf(kCosine));
+  EXPECT_EQ(m.shared.second, (Fractions{2 / 0.25f * 2 / 3, 2 / 0.5f * 2 / 3, 0}));
+  EXPECT_EQ(m.mean[2], 0);
+  EXPECT_EQ(m.square[2], 0);
+}
+
+// Each sample is of the part that its densities say. Where the lobe's density is no float there is light that it does
+// not find: its second moment is beyond all, not what is left without that light.
+TEST(Moments, KnowWhatTheLightTechniqueFinds) {
+  const Fractions n{2, 2, 2};
+  Moments m;
+  m.add(1, {1, 0, 1}, n, kSpecularTechniques);
+  m.add(1, {1, 0, 0}, n, kSpecularTechniques);
+  m.add(1, {0, 0, 1}, n, maskOf(kLight));
+  EXPECT_EQ(m.shared.second, (Fractions{0.25f, 0, 0.25f}));
+  EXPECT_EQ(m.unaimed.second, (Fractions{0.5f, 0, 0}));
+  EXPECT_EQ(m.exclusive.second, (Fractions{0, 0, 0.5f}));
+  EXPECT_EQ(m.shared.integral, 0.25f);
+  EXPECT_EQ(m.shared.square, 0.125f);
+  EXPECT_EQ(m.mean, (Fractions{0.125f + 0.5f, 0, 0.125f + 0.5f}));
+  Moments joint;
+  joint.add(1, {0, 1, 1}, n, kAllTechniques);
+  EXPECT_GE(joint.shared.second[kLobe], 1e29f);
 }
 
 }  // namespace

@@ -80,9 +80,11 @@ inline Moments exactMoments(const WardCase& c) {
     const double mean = three ? c.expect["mu_eq"][i].get<double>() : c.expect["mu_" + n + "_eq"].get<double>();
     const double sigma2 =
         three ? c.expect["sigma2_eq"][i].get<double>() : c.expect["sigma2_" + n + "_eq"].get<double>();
-    m.second[i] = static_cast<float>(three ? c.expect["m2"][i].get<double>() : c.expect["m2_" + n].get<double>());
+    m.shared.second[i] =
+        static_cast<float>(three ? c.expect["m2"][i].get<double>() : c.expect["m2_" + n].get<double>());
     m.mean[i] = static_cast<float>(mean);
     m.square[i] = static_cast<float>(sigma2 + mean * mean);
+    m.shared.integral += m.mean[i], m.shared.square += m.square[i];
   }
   return m;
 }

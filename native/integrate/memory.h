@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a render's frame takes of memory, and whether there is so much.
+#pragma once
+
+#include "integrate/render.h"
+
+namespace wardmis {
+
+// Of the largest moment of a render: the film with the pilot, or with the passes that are written.
+uint64_t bytesPerPixel(const RenderSettings& settings);
+
+// Bytes that this process may still take: of the machine's, of its control group's and of its own limit the least.
+uint64_t freeMemory();
+
+// Throws Error (memory), with the numbers, where a frame does not fit.
+void requireMemory(int width, int height, const RenderSettings& settings);
+
+}  // namespace wardmis
