@@ -50,7 +50,7 @@ class PanelTest(ComparisonTest):
         self.settings.samples = self.settings.seeds = self.settings.cycles_seeds = 2
         self.settings.use_cycles = False
 
-    def wait(self, seconds: float = 60) -> job.Job:
+    def wait(self, seconds: float = 180) -> job.Job:
         """Until the comparison has ended, as the timer would."""
         deadline = time.monotonic() + seconds
         while job.running():
