@@ -114,7 +114,8 @@ class WardBSDFNode(bpy.types.ShaderNodeCustomGroup):
 
     variant: bpy.props.EnumProperty(  # type: ignore[valid-type]
         name="Variant",
-        description="Which version of Ward's model: they differ towards grazing angles. Other engines show one Beckmann lobe for all three",
+        description="Which version of Ward's model: they differ towards grazing angles. Other engines show one "
+        "Beckmann lobe for all three",
         items=VARIANTS,
         default="ward-gmd",
         # Blender does not see a change of an add-on's property as one of the material

@@ -82,7 +82,10 @@ def _export_by_render(path: Path) -> None:
 class WARDMIS_OT_export(bpy.types.Operator, ExportHelper):
     bl_idname = "wardmis.export"
     bl_label = "Export WardMIS Scene"
-    bl_description = "Write the scene as it would be rendered now into a glTF file, which the command 'wardmis' renders and compares without Blender"
+    bl_description = (
+        "Write the scene as it would be rendered now into a glTF file, which the command 'wardmis' "
+        "renders and compares without Blender"
+    )
 
     filename_ext = ".glb"
     filter_glob: StringProperty(default="*.glb", options={"HIDDEN"})

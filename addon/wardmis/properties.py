@@ -133,13 +133,16 @@ FILTERS = (
 class WARDMIS_PG_scene(bpy.types.PropertyGroup):
     allocation: EnumProperty(
         name="Allocation",
-        description="How the samples at a hit are shared between the techniques: lobe, cosine and light",
+        description="Who gets how many of the samples where a ray meets a surface: the lobe (about the mirrored "
+        "direction), the cosine (all directions) or the light (towards lamps and the sky). It changes the noise, "
+        "never the brightness",
         items=ALLOCATIONS,
         default="auto",
     )
     weights: EnumProperty(
         name="Weights",
-        description="How samples of several techniques are combined that could have found the same light. It changes the noise, never the brightness",
+        description="How samples of several techniques are combined that could have found the same light. It changes "
+        "the noise, never the brightness",
         items=WEIGHTS,
         default="auto",
     )
@@ -172,7 +175,8 @@ class WARDMIS_PG_scene(bpy.types.PropertyGroup):
     )
     samples_per_hit: IntProperty(
         name="Samples per Hit",
-        description="Directions in which a sample of the camera looks for light where it first meets a surface; the allocation shares them among the techniques. More take longer and have less noise",
+        description="Directions in which a sample of the camera looks for light where it first meets a surface; the "
+        "allocation shares them among the techniques. More take longer and have less noise",
         default=3,
         min=1,
         max=256,
@@ -189,7 +193,8 @@ class WARDMIS_PG_scene(bpy.types.PropertyGroup):
     )
     min_fraction: FloatProperty(
         name="Least Share",
-        description="The least that any technique gets of the samples, as a fraction. More is safer where light is rare and bright, less lets the allocation go further",
+        description="The least that any technique gets of the samples, as a fraction. More is safer where light is "
+        "rare and bright, less lets the allocation go further",
         default=0.1,
         min=0.001,
         max=0.5,

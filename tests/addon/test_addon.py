@@ -133,6 +133,11 @@ class Tooltips(unittest.TestCase):
         short = {name: text for name, text in found.items() if len(text.split()) < 3}
         self.assertEqual(short, {})
 
+    def test_the_paper_is_named_where_it_is_meant(self):
+        for name, text in self.texts():
+            if re.search(r"\b(paper|Definition|Equation|Def\.|Eq\.)", text):
+                self.assertIn("Lopez Garces and Kong", text, name)
+
 
 class Preferences(unittest.TestCase):
     def test_button_tests_the_renderer(self):

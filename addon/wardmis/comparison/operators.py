@@ -210,7 +210,10 @@ def show(folder: Path) -> None:
 class WARDMIS_OT_compare(bpy.types.Operator):
     bl_idname = "wardmis.compare"
     bl_label = "Compare"
-    bl_description = "Render the scene with every chosen configuration, and by Cycles, and say which has the least noise for its time. It runs in the background, and Blender can be used meanwhile"
+    bl_description = (
+        "Render the scene with every chosen configuration, and by Cycles, and say which has the least "
+        "noise for its time. It runs in the background, and Blender can be used meanwhile"
+    )
 
     @classmethod
     def poll(cls, _context: Any) -> bool:
@@ -228,7 +231,10 @@ class WARDMIS_OT_compare(bpy.types.Operator):
 class WARDMIS_OT_compare_cancel(bpy.types.Operator):
     bl_idname = "wardmis.compare_cancel"
     bl_label = "Cancel"
-    bl_description = "Stop, and report what is done if that is enough for a report. Pressed again: stop at once, without one. Compare goes on from there"
+    bl_description = (
+        "Stop, and report what is done if that is enough for a report. Pressed again: stop at once, "
+        "without one. Compare goes on from there"
+    )
 
     @classmethod
     def poll(cls, _context: Any) -> bool:

@@ -40,7 +40,8 @@ _items: list[tuple[str, str, str]] = []  # Blender keeps no copy of the texts of
 class WARDMIS_PG_comparison(bpy.types.PropertyGroup):
     allocations: EnumProperty(
         name="Allocations",
-        description="The allocations to compare, each with the weights that go with it; everything else is as set in the panels above",
+        description="The allocations to compare, each with the weights that go with it; everything else is as set in "
+        "the panels above",
         items=[(name, label, text, 1 << i) for i, (name, label, text) in enumerate(ALLOCATIONS)],
         default=set(DEFAULT_CONFIGURATIONS),
         options={"ENUM_FLAG"},
@@ -56,7 +57,8 @@ class WARDMIS_PG_comparison(bpy.types.PropertyGroup):
     )
     seconds: FloatProperty(
         name="Seconds",
-        description="Time for everything, the reference and Cycles included. Where it does not suffice for all seeds there are fewer",
+        description="Time for everything, the reference and Cycles included. Where it does not suffice for all seeds "
+        "there are fewer",
         default=120.0,
         min=1.0,
         soft_max=36000.0,
@@ -73,7 +75,8 @@ class WARDMIS_PG_comparison(bpy.types.PropertyGroup):
     )
     seeds: IntProperty(
         name="Seeds",
-        description="How often each configuration is rendered, each time with other noise: what is better by chance is told from what is better",
+        description="How often each configuration is rendered, each time with other noise: what is better by chance "
+        "is told from what is better",
         default=16,
         min=2,
         soft_max=64,
@@ -100,7 +103,8 @@ class WARDMIS_PG_comparison(bpy.types.PropertyGroup):
     )
     folder: StringProperty(
         name="Folder",
-        description="Each comparison gets a folder in it. Empty: beside the file, or in the folder for temporary files where there is none",
+        description="Each comparison gets a folder in it. Empty: beside the file, or in the folder for temporary "
+        "files where there is none",
         subtype="DIR_PATH",
     )
 
@@ -161,7 +165,8 @@ class WARDMIS_PG_results(bpy.types.PropertyGroup):
     )
     top: FloatProperty(
         name="Scale",
-        description="The relative difference of a pixel that has the brightest colour: 0.1 is a tenth of its brightness in B",
+        description="The relative difference of a pixel that has the brightest colour: 0.1 is a tenth of its "
+        "brightness in B",
         default=0.5,
         min=SMALLEST_TOP,
         soft_max=10.0,
@@ -170,7 +175,8 @@ class WARDMIS_PG_results(bpy.types.PropertyGroup):
     )
     fit: BoolProperty(
         name="Fit",
-        description="Choose the scale for each pair of images so that their differences are seen. Off: keep it, to compare pairs",
+        description="Choose the scale for each pair of images so that their differences are seen. Off: keep it, to "
+        "compare pairs",
         default=True,
         update=_changed,
     )
