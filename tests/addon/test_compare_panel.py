@@ -571,6 +571,13 @@ class Times(PanelTest):
         self.settings.allocations = set()
         self.assertEqual(panels.estimate_text(self.scene), "")
 
+    def test_too_little_time_is_said_before(self):
+        self.settings.stop_by, self.settings.seconds = "seconds", 10.0
+        self.settings.seeds = 16
+        for speed, said in ((16 * 8 * 100.0, "About 10 s at 16 × 8"), (16 * 8 * 2.0, "Too little here: at least 46 s")):
+            with mock.patch.object(rendering, "speed", lambda speed=speed: speed):
+                self.assertIn(said, panels.estimate_text(self.scene))
+
     def test_a_render_is_measured(self):
         rendering.note_speed(100.0, 2.0)
         self.assertEqual(rendering.speed(), 50.0)

@@ -9,6 +9,8 @@ from .converge import Study, checkpoints
 
 REFERENCE_FACTOR = 16  # samples of the command's reference, over those of a run
 CYCLES_REFERENCE_FACTOR = 32  # of all of Cycles' reference images
+FEWEST_SAMPLES, FEWEST_SEEDS = 4, 4  # for which a budget has to suffice
+OWN_SHARE, CYCLES_SHARE = 0.7, 0.9  # of a budget, for the runs
 GUESS = 400_000.0  # camera samples a second of a thread, where nothing has been rendered yet
 
 
@@ -25,6 +27,7 @@ class Estimate:
     own: float  # seconds
     cycles: float
     guessed: bool  # from no render of the scene
+    needed: float = 0.0  # seconds that a budget has to have at least, as far as is known
 
     @property
     def seconds(self) -> float:
@@ -35,7 +38,7 @@ def estimate(study: Study, pixels: int, cycles_seeds: int | None, speeds: Speeds
     """Of `study` at so many `pixels`; `cycles_seeds` is none without Cycles."""
     if study.budget_seconds is not None:
         half = study.budget_seconds / 2 if cycles_seeds is not None else 0.0
-        return Estimate(study.budget_seconds - half, half, False)
+        return Estimate(study.budget_seconds - half, half, False, _needed(study, pixels, cycles_seeds, speeds))
     guess = GUESS * threads
     samples = study.max_spp * (len(study.configurations) * study.seeds + REFERENCE_FACTOR)
     own = pixels * samples / (speeds.own or guess)
@@ -44,6 +47,18 @@ def estimate(study: Study, pixels: int, cycles_seeds: int | None, speeds: Speeds
     samples = sum(checkpoints(study.max_spp)) * cycles_seeds + CYCLES_REFERENCE_FACTOR * study.max_spp
     cycles = pixels * samples / (speeds.cycles or speeds.own or guess)
     return Estimate(own, cycles, speeds.own is None)
+
+
+def _needed(study: Study, pixels: int, cycles_seeds: int | None, speeds: Speeds) -> float:
+    own = cycles = 0.0
+    if speeds.own:
+        seeds = min(FEWEST_SEEDS, study.seeds)
+        own = pixels * FEWEST_SAMPLES * len(study.configurations) * seeds / speeds.own / OWN_SHARE
+    if speeds.cycles and cycles_seeds is not None:
+        seeds = min(FEWEST_SEEDS, cycles_seeds)
+        samples = sum(checkpoints(FEWEST_SAMPLES)) * seeds + CYCLES_REFERENCE_FACTOR * FEWEST_SAMPLES
+        cycles = pixels * samples / speeds.cycles / CYCLES_SHARE
+    return own if cycles_seeds is None else 2 * max(own, cycles)
 
 
 def duration(seconds: float) -> str:

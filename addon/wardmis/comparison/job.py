@@ -58,6 +58,7 @@ class Job:
     def _start_next(self) -> None:
         stage = self._stage = self._stages.pop(0)
         self.fraction = 0.0
+        self.text = f"{stage.name[0].upper()}{stage.name[1:]} begins"
         try:
             self._process = Renderer(stage.command, stage.name)
         except RendererError as error:

@@ -67,6 +67,10 @@ def estimate_text(scene: Any) -> str:
     text = f"About {duration(found.seconds)} at {width} × {height}"
     if found.cycles:
         text += f", {duration(found.cycles)} of it for Cycles"
+    if found.needed > found.seconds:
+        return (
+            f"{text}. Too little here: at least {duration(found.needed)}, or a lower resolution, or fewer allocations"
+        )
     return f"{text}. A guess: after a render (F12) it is better known" if found.guessed else text
 
 
