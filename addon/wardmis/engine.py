@@ -10,7 +10,6 @@ from __future__ import annotations
 import contextlib
 import json
 import shutil
-import tempfile
 import traceback
 from collections.abc import Iterator
 from pathlib import Path
@@ -19,7 +18,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from . import compat, rendering, warnings
+from . import compat, rendering, temporary, warnings
 from .export import ExportCancelled, ExportError, export_depsgraph
 from .export.camera import border, full_resolution
 from .exr import read_header, read_pass
@@ -67,8 +66,8 @@ class WARDMIS_RenderEngine(bpy.types.RenderEngine):
 
     def render(self, depsgraph: Any) -> None:
         try:
-            with tempfile.TemporaryDirectory(prefix="wardmis-", dir=bpy.app.tempdir) as folder:
-                _Render(self, depsgraph, Path(folder)).run()
+            with temporary.folder() as folder:
+                _Render(self, depsgraph, folder).run()
         except (ExportCancelled, _Stopped):
             self.keep_text("Cancelled")
             # a script must not take it for a success, and an animation not go on without the add-on
@@ -236,6 +235,7 @@ class _Render:
         kind = event.get("event")
         if kind == "start":
             self.started = True
+            self.scene_path.unlink(missing_ok=True)  # it has been read: should Blender be killed, no file stays behind
             for note in event.get("notes", []):
                 self._warn(note)
         elif kind == "progress":

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +11,7 @@ import bpy
 from bpy.props import StringProperty
 from bpy_extras.io_utils import ExportHelper
 
-from . import second_blender, warnings
+from . import second_blender, temporary, warnings
 from .engine import WARDMIS_RenderEngine, scene_export_to
 from .export import ExportError, export_depsgraph
 from .export.target import check_target
@@ -52,8 +51,8 @@ def run_task(tell: second_blender.Tell, percentage: int, path: str) -> None:
 
 
 def _export_by_second_blender(path: Path) -> None:
-    with tempfile.TemporaryDirectory(prefix="wardmis-", dir=bpy.app.tempdir) as folder:
-        blend = second_blender.save_copy(Path(folder))[0]
+    with temporary.folder() as folder:
+        blend = second_blender.save_copy(folder)[0]
         percentage = bpy.context.scene.render.resolution_percentage
         place = second_blender.place(bpy.context)
         warnings.begin(**place)

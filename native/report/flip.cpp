@@ -1,30 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/flip.h"
 
-#include <fmt/format.h>
 #include <unistd.h>
 
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <regex>
 
 #include "film/exr.h"
+#include "film/run_program.h"
 
 namespace wardmis {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string outputOf(const std::string& command) {
-  std::string said;
-  FILE* pipe = popen((command + " 2>/dev/null </dev/null").c_str(), "r");
-  if (pipe == nullptr) return said;
-  char buffer[512];
-  while (std::fgets(buffer, sizeof buffer, pipe) != nullptr) said += buffer;
-  pclose(pipe);
-  return said;
-}
 
 void write(const fs::path& path, const RgbImage& image) {
   ExrImage exr{image.width, image.height, {}, {}};
@@ -38,7 +27,7 @@ void write(const fs::path& path, const RgbImage& image) {
 }  // namespace
 
 bool flipInstalled() {
-  static const bool installed = outputOf("flip --help").find("--reference") != std::string::npos;
+  static const bool installed = runProgram({"flip", "--help"}).said.find("--reference") != std::string::npos;
   return installed;
 }
 
@@ -55,7 +44,8 @@ std::optional<double> flipError(const RgbImage& image, const RgbImage& reference
   } cleaner{folder};
   write(cleaner.path / "r.exr", reference);
   write(cleaner.path / "t.exr", image);
-  const std::string said = outputOf(fmt::format("cd '{}' && flip -r r.exr -t t.exr -v 1 -nexm -nerm", folder));
+  const std::string said =
+      runProgram({"flip", "-r", "r.exr", "-t", "t.exr", "-v", "1", "-nexm", "-nerm"}, {}, cleaner.path).said;
   std::smatch mean;
   if (!std::regex_search(said, mean, std::regex("Mean: *([0-9.eE+-]+)"))) return {};
   return std::atof(mean[1].str().c_str());

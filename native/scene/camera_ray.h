@@ -12,7 +12,10 @@ namespace wardmis {
 
 class CameraRays {
  public:
-  CameraRays(const Camera& camera, const Film& film) : camera_(camera), film_(film) {}
+  CameraRays(const Camera& camera, const Film& film) : camera_(camera), film_(film) {
+    const Vec3f n = cross(camera.toWorld.x, camera.toWorld.y);
+    toDepth_ = n / -dot(n, camera.toWorld.z);
+  }
 
   bool needsLens() const { return camera_.lensRadius > 0; }
 
@@ -40,7 +43,7 @@ class CameraRays {
     return r;
   }
   // Planar depth of a point at distance t along a ray of this camera.
-  float depth(const Ray& r, float t) const { return -dot(r.direction, camera_.toWorld.z) * t; }
+  float depth(const Ray& r, float t) const { return dot(r.direction, toDepth_) * t; }
 
  private:
   // Uniform on a regular polygon inscribed in the unit circle.
@@ -53,6 +56,7 @@ class CameraRays {
   }
   const Camera& camera_;
   const Film& film_;
+  Vec3f toDepth_;  // minus the z of a vector in the camera's axes
 };
 
 }  // namespace wardmis

@@ -123,6 +123,9 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const Environment& en
         if (!(dot(n, n) > 0)) continue;  // without area
         l.normal = normalize(n);
         if (dot(l.normal, light.toWorld.z) > 0) l.normal = -l.normal;  // emits along -z
+        l.axis = normalize(-light.toWorld.z);
+        l.tilted = dot(l.axis, l.normal) < 1 - 1e-6f;
+        if (!l.tilted) l.axis = l.normal;
         l.area = length(n) * (light.ellipse ? kPif : 4.0f);
         l.spread = light.spread < kPif - 1e-4f;
         l.spreadHalf = 0.5f * light.spread;
@@ -213,14 +216,25 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const Environment& en
   table_ = AliasTable(power);
 }
 
+float Emitters::cosine(const Lamp& lamp, Vec3f d) {
+  const float c = dot(d, lamp.normal);
+  if (!lamp.tilted) return c;
+  return dot(d, lamp.axis) > 0 ? std::abs(c) : 0;
+}
+
 // Radiance (finite lights) or intensity (delta lights) leaving in unit direction d.
 Rgb Emitters::profile(const Lamp& lamp, Vec3f d) {
   float f = 1;
+  if (lamp.tilted) {  // as Cycles has it, the light falls off by the angle to the axis, whatever the plane
+    const float plane = cosine(lamp, d);
+    if (!(plane > 0)) return {0, 0, 0};
+    f = dot(d, lamp.axis) / plane;
+  }
   if (lamp.spread) {  // area light of limited spread: Cycles' formula
-    const float cosA = dot(d, lamp.normal);
+    const float cosA = dot(d, lamp.axis);
     if (!(cosA > 0)) return {0, 0, 0};
     const float tanA = std::sqrt(std::max(0.0f, 1 - cosA * cosA)) / cosA;
-    f = std::max(0.0f, (lamp.spreadTan - tanA) / (lamp.spreadTan - lamp.spreadHalf));
+    f *= std::max(0.0f, (lamp.spreadTan - tanA) / (lamp.spreadTan - lamp.spreadHalf));
   }
   if (lamp.spot) {
     const Vec3f local = lamp.toLocal.inverseVector(d);
@@ -233,18 +247,23 @@ Rgb Emitters::profile(const Lamp& lamp, Vec3f d) {
   return lamp.emitted * f;
 }
 
+// Whether points of a rectangle are sampled, not directions: seen small, where the solid angle would be lost to
+// cancellation (and the two hardly differ), and where it is no rectangle.
+bool Emitters::sampledByArea(const Lamp& lamp, float height, float d2) {
+  return lamp.tilted || lamp.area * height < 0.05f * d2 * std::sqrt(d2) ||
+         std::abs(dot(lamp.halfX, lamp.halfY)) > 1e-4f * length(lamp.halfX) * length(lamp.halfY);
+}
+
 LightSample Emitters::sampleRectangle(const Lamp& lamp, Vec3f from, Vec2f u) const {
   LightSample s;
   const Vec3f toCenter = lamp.center - from;
   const float height = -dot(toCenter, lamp.normal);  // of the point above the light's plane
-  if (!(height > 0)) return s;
+  if (!(height > 0) && !lamp.tilted) return s;
   const float d2 = dot(toCenter, toCenter);
   Vec3f offset;
   float pdf;
-  // seen small: by area, where the solid angle would be lost to cancellation (and the two hardly differ)
-  const bool small = lamp.area * height < 0.05f * d2 * std::sqrt(d2);
   const float lx = length(lamp.halfX), ly = length(lamp.halfY);
-  if (small || std::abs(dot(lamp.halfX, lamp.halfY)) > 1e-4f * lx * ly) {
+  if (sampledByArea(lamp, height, d2)) {
     offset = lamp.halfX * (2 * u.x - 1) + lamp.halfY * (2 * u.y - 1);
     pdf = 0;
   } else {
@@ -260,7 +279,7 @@ LightSample Emitters::sampleRectangle(const Lamp& lamp, Vec3f from, Vec2f u) con
   const float t2 = dot(to, to);
   s.distance = std::sqrt(t2);
   s.direction = to / s.distance;
-  const float cosLight = -dot(s.direction, lamp.normal);
+  const float cosLight = cosine(lamp, -s.direction);
   if (!(cosLight > 0)) return s;
   s.pdf = pdf > 0 ? pdf : t2 / (cosLight * lamp.area);
   s.radiance = profile(lamp, -s.direction);
@@ -271,9 +290,8 @@ float Emitters::pdfRectangle(const Lamp& lamp, Vec3f from, float t, float cosLig
   const Vec3f toCenter = lamp.center - from;
   const float height = -dot(toCenter, lamp.normal);
   const float d2 = dot(toCenter, toCenter);
+  if (sampledByArea(lamp, height, d2)) return t * t / (cosLight * lamp.area);
   const float lx = length(lamp.halfX), ly = length(lamp.halfY);
-  if (lamp.area * height < 0.05f * d2 * std::sqrt(d2) || std::abs(dot(lamp.halfX, lamp.halfY)) > 1e-4f * lx * ly)
-    return t * t / (cosLight * lamp.area);
   const float cx = dot(toCenter, lamp.halfX) / lx, cy = dot(toCenter, lamp.halfY) / ly;
   const SphericalRectangle q(cx - lx, cx + lx, cy - ly, cy + ly, -height);
   return q.solidAngle > 1e-4f ? 1 / q.solidAngle : 0;
@@ -324,7 +342,7 @@ LightSample Emitters::sample(Vec3f from, ChoicePoint point) const {
       const float t2 = dot(to, to);
       s.distance = std::sqrt(t2);
       s.direction = to / s.distance;
-      const float cosLight = -dot(s.direction, lamp.normal);
+      const float cosLight = cosine(lamp, -s.direction);
       if (!(cosLight > 0)) return s;
       s.pdf = t2 / (cosLight * lamp.area);
       s.radiance = profile(lamp, -s.direction);
@@ -412,10 +430,10 @@ bool Emitters::meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax,
   switch (lamp.kind) {
     case Kind::kRectangle:
     case Kind::kEllipse: {
-      const float cosLight = -dot(d, lamp.normal);
+      const float cosLight = cosine(lamp, -d);
       if (!(cosLight > 0)) return false;  // one-sided
       const Vec3f toCenter = lamp.center - ray.origin;
-      const float t = -dot(toCenter, lamp.normal) / cosLight;
+      const float t = dot(toCenter, lamp.normal) / dot(d, lamp.normal);
       if (!(t > ray.tMin) || !(t < tMax)) return false;
       const Vec3f p = d * t - toCenter;
       // solve p = a halfX + b halfY in the plane (the axes need not be orthogonal)

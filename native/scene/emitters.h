@@ -68,6 +68,8 @@ class Emitters {
     Vec3f center{};              // or, for suns, the direction towards it
     Vec3f halfX{}, halfY{};      // rectangle, ellipse: half axes
     Vec3f normal{};              // rectangle, ellipse: unit
+    Vec3f axis{};                // rectangle, ellipse: unit; where it looks
+    bool tilted = false;         // axis is not the normal: the light's node is sheared
     float area = 0, radius = 0;  // sun disk: of the disk at distance 1
     float oneMinusCos = 0;       // sun: 1 - cos of the half angle
     Rgb emitted{};               // radiance; point intensity; sun irradiance
@@ -82,6 +84,10 @@ class Emitters {
   float probability(size_t emitter) const {
     return table_.empty() ? 0 : table_.probability(static_cast<uint32_t>(emitter));
   }
+  // Rectangle, ellipse: of the angle between its plane's normal and d, which leaves it; not above 0: no light leaves
+  // there.
+  static float cosine(const Lamp& lamp, Vec3f d);
+  static bool sampledByArea(const Lamp& lamp, float height, float d2);
   static Rgb profile(const Lamp& lamp, Vec3f fromLight);  // radiance or intensity in a direction leaving the light
   bool meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax, EmitterHit& hit) const;
   LightSample sampleRectangle(const Lamp& lamp, Vec3f from, Vec2f u) const;

@@ -87,13 +87,9 @@ std::optional<Light> readPunctualLight(const Json& json, const Affine& toWorld) 
 Camera readCamera(const Json& json, const Json& node, const Affine& toWorld, const Film& film) {
   Camera camera;
   camera.name = node.name();
-  // Without scale and shear; a mirrored camera stays mirrored.
-  const Vec3f y = toWorld.y - toWorld.z * (dot(toWorld.y, toWorld.z) / dot(toWorld.z, toWorld.z));
-  camera.toWorld.z = normalize(toWorld.z);
-  camera.toWorld.y = normalize(y);
-  camera.toWorld.x = cross(camera.toWorld.y, camera.toWorld.z) * std::copysign(1.0f, toWorld.determinant());
-  camera.toWorld.t = toWorld.t;
-  if (!isFinite(camera.toWorld.y) || !isFinite(camera.toWorld.z))
+  camera.toWorld = {normalize(toWorld.x), normalize(toWorld.y), normalize(toWorld.z), toWorld.t};
+  if (!isFinite(camera.toWorld.x) || !isFinite(camera.toWorld.y) || !isFinite(camera.toWorld.z) ||
+      camera.toWorld.determinant() == 0)
     node.fail("carries a camera, but its scale is 0", "give the camera a scale of 1");
 
   const auto setClip = [&](const Json& place, float near, float far) {

@@ -139,7 +139,7 @@ struct Light {
 
 struct Camera {
   std::string name;
-  Affine toWorld;  // orthonormal; looks along -z
+  Affine toWorld;  // unit axes, orthogonal unless its node is sheared; looks along -z
   bool orthographic = false;
   float left = -0.36f, right = 0.36f, bottom = -0.24f, top = 0.24f;  // full frame; distance 1, or metres (orthographic)
   float clipNear = 0, clipFar = 1e30f;                               // planar depths

@@ -2,16 +2,15 @@
 #include "study/gnuplot.h"
 
 #include <fmt/format.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 
+#include "film/run_program.h"
 #include "film/write_file.h"
 #include "math/error.h"
 
@@ -38,30 +37,22 @@ void drawWithGnuplot(const std::string& path, int width, int height, const std::
   const int fd = mkstemp(temporary.data());
   if (fd < 0) throw Error(ExitCode::kFile, temporary + ": cannot be created", "check TMPDIR and the free space");
   close(fd);
-  const std::string messages = temporary + ".log";
   const struct Cleaner {
-    const std::string &a, &b;
-    ~Cleaner() { std::remove(a.c_str()), std::remove(b.c_str()); }
-  } cleaner{temporary, messages};
+    const std::string& path;
+    ~Cleaner() { std::remove(path.c_str()); }
+  } cleaner{temporary};
   const std::string terminal = path.ends_with(".svg") ? fmt::format("svg size {},{} background 'white'", width, height)
                                                       : fmt::format("pngcairo size {},{}", width, height);
-  std::signal(SIGPIPE, SIG_IGN);  // a gnuplot that ends early is told by its exit code
-  FILE* pipe = popen(fmt::format("gnuplot - >'{}' 2>&1", messages).c_str(), "w");
-  if (pipe == nullptr) throw Error(ExitCode::kFile, "no process for gnuplot", "close other programs");
-  const std::string commands =
-      fmt::format("set terminal {}\nset output '{}'\n{}\nunset output\n", terminal, temporary, script);
-  std::fwrite(commands.data(), 1, commands.size(), pipe);  // one that is not there does not read them: told below
-  const int status = pclose(pipe);
-  const auto read = [](const std::string& file) {
-    std::ifstream in(file, std::ios::binary);
-    return std::string(std::istreambuf_iterator<char>(in), {});
-  };
-  const std::string said = read(messages), image = read(temporary);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
+  const Finished gnuplot = runProgram(
+      {"gnuplot", "-"},
+      fmt::format("set terminal {}\nset output {}\n{}\nunset output\n", terminal, gnuplotText(temporary), script));
+  std::ifstream in(temporary, std::ios::binary);
+  const std::string image(std::istreambuf_iterator<char>(in), {});
+  if (gnuplot.code == 127)
     throw Error(ExitCode::kFile, path + ": figures need the program gnuplot, which is not found",
                 "install it (gnuplot-nox on Debian and Ubuntu), or leave --plot out");
-  if (status != 0 || image.empty())
-    throw Error(ExitCode::kFile, fmt::format("{}: gnuplot failed: {}", path, said.substr(0, 300)), "");
+  if (gnuplot.code != 0 || image.empty())
+    throw Error(ExitCode::kFile, fmt::format("{}: gnuplot failed: {}", path, gnuplot.said.substr(0, 300)), "");
   writeFile(path, image);
 }
 

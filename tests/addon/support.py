@@ -104,7 +104,7 @@ def blender(
         (scripts / "addons").mkdir(parents=True)
         (scripts / "addons" / "wardmis").symlink_to(ADDON, target_is_directory=True)
         (folder / "config").mkdir()
-        (folder / "tmp").mkdir()
+        (folder / "tmp").mkdir(exist_ok=True)
     (folder / "setup.py").write_text(
         "import bpy\nscene = bpy.context.scene\nscene.render.resolution_percentage = 5\n" + script
     )

@@ -19,7 +19,8 @@ import numpy as np
 import wardmis
 from comparison_support import SMALL, ComparisonTest
 from support import ADDON, FAKE, HERE, read_exr
-from wardmis.comparison import converge, cycles, cycles_settings, lock
+from wardmis import lock
+from wardmis.comparison import converge, cycles, cycles_settings
 from wardmis.comparison.manifest import Manifest
 from wardmis.comparison.overrides import overridden
 from wardmis.comparison.scene_file import SceneFile, read_scene_file

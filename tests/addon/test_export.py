@@ -195,6 +195,22 @@ class Materials(SceneTest):
         scene = self.gather()
         self.assertEqual([scene.materials[p.material].name for p in scene.meshes[0].primitives], ["Only"])
 
+    def test_no_material_is_as_in_cycles(self):
+        """From 5.0 on the same as a new material, whose numbers come from single precision; before, diffuse alone."""
+        self.add_quad("Without")
+        new = bpy.data.materials.new("New")
+        new.use_nodes = True
+        self.add_quad("With").data.materials.append(new)
+        materials = {m.name: m for m in self.gather().materials}
+        without, other = materials["(no material)"], materials["New"]
+        np.testing.assert_allclose(without.diffuse.value, other.diffuse.value, rtol=1e-6)
+        if compat.VERSION < (5, 0, 0):
+            self.assertEqual(without.specular.value, (0, 0, 0))
+            return
+        self.assertEqual(without.variant, other.variant)
+        np.testing.assert_allclose(without.specular.value, other.specular.value, rtol=1e-6)
+        self.assertEqual((without.alpha_x, without.alpha_y), (other.alpha_x, other.alpha_y))
+
     def test_material_of_the_object_goes_before_that_of_the_mesh(self):
         quad = self.add_quad("One")
         quad.data.materials.append(bpy.data.materials.new("Mesh's"))

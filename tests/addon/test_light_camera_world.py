@@ -49,6 +49,33 @@ class Lights(SceneTest):
         self.light("AREA", size=1).scale = (2, 5, 1)
         self.assertAlmostEqual(self.only().emission, 10 / (math.pi if NEW else 4), 5)
 
+    def under_sheared_parent(self, obj):
+        parent = self.add("Parent", None)
+        parent.scale = 1, 3, 0.5
+        obj.parent = parent
+        obj.rotation_euler = 0.4, 0.7, 1.1
+        bpy.context.view_layer.update()
+        return np.array(obj.matrix_world)[:3, :3]
+
+    def test_sheared_area_light_gives_its_power(self):
+        """Over the area that its axes span, which are not orthogonal."""
+        axes = self.under_sheared_parent(self.light("AREA", shape="RECTANGLE", size=2, size_y=3))
+        light = self.only()
+        np.testing.assert_allclose(light.matrix[:3, :3], axes, atol=1e-6)
+        area = 6 * np.linalg.norm(np.cross(axes[:, 0], axes[:, 1]))
+        self.assertLess(area, 5.9 * np.prod(np.linalg.norm(axes[:, :2], axis=0)))
+        self.assertAlmostEqual(light.emission, 100 / ((math.pi if NEW else 4) * area), 4)
+
+    def test_cone_of_a_sheared_spot(self):
+        """Round until 4.0, then as the axes have it."""
+        axes = self.under_sheared_parent(self.light("SPOT"))
+        exported = self.only().matrix[:3, :3]
+        if NEW:
+            np.testing.assert_allclose(exported, axes, atol=1e-6)
+        else:
+            np.testing.assert_allclose(exported.T @ exported, np.eye(3), atol=1e-6)
+            np.testing.assert_allclose(exported[:, 2], axes[:, 2] / np.linalg.norm(axes[:, 2]), atol=1e-6)
+
     def test_area_light_without_area_is_noted(self):
         self.light("AREA", size=1).scale = (0, 1, 1)
         scene = self.gather()

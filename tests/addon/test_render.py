@@ -5,12 +5,14 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 import time
 from pathlib import Path
 
 import bpy
 from support import HERE, RenderTest, blender, exr_attributes, read_exr
+from wardmis.lock import alone
 
 MULTILAYER = """
 image = scene.render.image_settings
@@ -365,9 +367,31 @@ class Stopping(RenderTest):
         self.assertEqual(list((self.folder / "tmp").rglob("wardmis-*")), [])
 
     def test_renderer_ends_when_blender_is_killed(self):
-        process, renderer = self.start("slow")
-        process.kill()
-        self.wait_for_end(renderer, 10)
+        for kill in (signal.SIGKILL, signal.SIGTERM):
+            with self.subTest(kill):
+                (self.folder / "calls.log").unlink(missing_ok=True)
+                process, renderer = self.start("slow")
+                folder = next((self.folder / "tmp").rglob("wardmis-work-*"))
+                deadline = time.monotonic() + 10
+                while (folder / "scene.glb").exists():  # until it has been read
+                    self.assertLess(time.monotonic(), deadline, "the scene is still there")
+                    time.sleep(0.02)
+                process.send_signal(kill)
+                self.wait_for_end(renderer, 10)
+                process.communicate()
+                shutil.rmtree(folder)
+
+    def test_what_a_killed_blender_leaves_goes_with_the_next_render(self):
+        left, young, used = (self.folder / "tmp" / "blender_x" / f"wardmis-work-{name}" for name in ("a", "b", "c"))
+        for path in (left, young, used):
+            path.mkdir(parents=True)
+            (path / "scene.glb").write_bytes(b"glTF")
+            if path != young:
+                os.utime(path, (0, 0))
+        with alone(used):
+            run = self.run_blender()
+        self.assertEqual(run.code, 0, run.output)
+        self.assertEqual([path.exists() for path in (left, young, used)], [False, True, True])
 
 
 class Finding(RenderTest):

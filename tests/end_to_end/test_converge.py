@@ -441,7 +441,11 @@ class Converge(CommandTest):
     def test_flip_is_reported_where_it_is_installed(self):
         """The program of its authors, run by hand on the same images, says the same."""
         flip = Path(os.environ["WARDMIS_FLIP"]) / "flip"
-        _, report = self.quick(env={**os.environ, "PATH": f"{flip.parent}:/usr/bin:/bin"})
+        temporary = self.folder / 'it\'s "$(touch away)"'  # no shell reads it
+        temporary.mkdir()
+        environment = {**os.environ, "PATH": f"{flip.parent}:/usr/bin:/bin", "TMPDIR": str(temporary)}
+        _, report = self.quick(env=environment)
+        self.assertEqual(list(temporary.iterdir()), [])
         self.assertEqual(report["metrics"][-1]["name"], "flip")
         folder = self.folder / "study"
         said = []

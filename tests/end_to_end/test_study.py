@@ -7,6 +7,7 @@ import math
 import os
 import re
 import stat
+from pathlib import Path
 
 from blender import ROOT
 from command import CommandTest
@@ -176,6 +177,16 @@ class Study(CommandTest):
             self.assertTrue(link.is_symlink())
             self.assertTrue(target.read_text().startswith("strategy,"))
         self.assertEqual(sorted(path.name for path in (self.folder / "other").iterdir()), ["False.csv", "True.csv"])
+
+    def test_figure_by_way_of_a_folder_of_any_name(self):
+        """No shell reads it."""
+        temporary = self.folder / 'it\'s a "$(touch away)" \\ `touch away`; touch away'
+        temporary.mkdir()
+        figure = self.folder / "s.svg"
+        self.run_command("study", "--trials", "2", "--plot", figure, env={**os.environ, "TMPDIR": str(temporary)})
+        self.assertIn("<svg", figure.read_text())
+        self.assertEqual(list(temporary.iterdir()), [])
+        self.assertFalse((self.folder / "away").exists() or Path("away").exists())
 
     def test_figure_without_gnuplot(self):
         done = self.refused(

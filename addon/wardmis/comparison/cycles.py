@@ -20,9 +20,9 @@ from typing import Any
 import bpy
 
 from ..exr import read_header
+from ..lock import alone
 from . import cycles_settings, interrupt
 from .converge import checkpoints, chosen_spp
-from .lock import alone
 from .manifest import Manifest
 from .overrides import overridden
 from .scene_file import SceneFile

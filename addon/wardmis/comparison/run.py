@@ -12,13 +12,13 @@ from typing import Any
 
 import bpy
 
+from ..lock import alone
 from ..operators import export_scene
 from ..preferences import renderer_path
 from ..process import STOPPED, Renderer, RendererError
 from . import interrupt
 from .converge import DEFAULT_CONFIGURATIONS, Outcome, Study, arguments, explain_half
 from .cycles import CyclesPlan, Progress, render_cycles, require_cycles
-from .lock import alone
 from .overrides import Setting, overridden
 from .same_scene import settle
 from .scene_file import read_scene_file

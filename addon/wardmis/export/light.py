@@ -11,6 +11,7 @@ import math
 from typing import Any
 
 import numpy as np
+from mathutils import Vector
 
 from .. import compat
 from .context import ExportContext, ExportError
@@ -71,13 +72,15 @@ def _area(light: Any, power: float, data: LightData) -> None:
     data.shape = "ellipse" if light.shape in {"DISK", "ELLIPSE"} else "rectangle"
     data.size = (light.size, light.size_y if light.shape in {"RECTANGLE", "ELLIPSE"} else light.size)
     data.spread = light.spread
-    axes = np.linalg.norm(data.matrix[:3, :2], axis=0) * data.size
-    area = float(axes[0] * axes[1]) * (math.pi / 4 if data.shape == "ellipse" else 1.0)
+    x, y = data.matrix[:3, 0] * data.size[0], data.matrix[:3, 1] * data.size[1]
+    shape = math.pi / 4 if data.shape == "ellipse" else 1.0
+    area = float(np.linalg.norm(np.cross(x, y))) * shape
     if area == 0:
         data.emission = math.inf
         return
-    divisor = area if compat.light_is_normalized(light) else 1.0
-    data.emission = power / (divisor * (math.pi if compat.LIGHTS_OF_4_0 else 4.0))
+    # Cycles takes the axes for orthogonal, and what it so calls the area for that of the light
+    power *= 1.0 if compat.light_is_normalized(light) else float(np.linalg.norm(x) * np.linalg.norm(y)) * shape
+    data.emission = power / (area * (math.pi if compat.LIGHTS_OF_4_0 else 4.0))
 
 
 def _point(light: Any, power: float, data: LightData) -> None:
@@ -95,7 +98,7 @@ def _spot(light: Any, power: float, data: LightData) -> None:
     data.cosine = not compat.LIGHTS_OF_4_0
     if not compat.LIGHTS_OF_4_0:  # the cone was always a round one
         data.matrix = data.matrix.copy()
-        data.matrix[:3, :3] /= np.maximum(np.linalg.norm(data.matrix[:3, :3], axis=0), 1e-30)
+        data.matrix[:3, :3] = Vector(data.matrix[:3, 2]).to_track_quat("Z", "Y").to_matrix()
 
 
 def _sun(light: Any, power: float, data: LightData) -> None:

@@ -169,9 +169,14 @@ def custom_normals_backwards():
 
 @scene
 def zero_scale_axis():
+    """Open shapes: of a closed one both sides would coincide, and shade each other as the rounding has it."""
     stage()
-    box(location=(-1, 0, 1), scale=(1, 0, 1))
-    ball(location=(1.3, 0, 1)).scale.z = 0
+    wall = mesh("Wall", [(-1, -0.5, -1), (1, 0.4, -1), (1, -0.3, 1), (-1, 0.8, 1)], [(0, 1, 2, 3)])
+    wall.location, wall.scale.y = (-1, 0, 1.1), 0
+    angles = np.linspace(0, 2 * math.pi, 24, endpoint=False)
+    rim = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=-1)
+    hill = mesh("Hill", [(0, 0, 1), *rim], [(0, k + 1, (k + 1) % 24 + 1) for k in range(24)], smooth=True)
+    hill.location, hill.scale.z = (1.3, 0, 1), 0
 
 
 @scene

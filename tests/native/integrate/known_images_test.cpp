@@ -206,6 +206,38 @@ TEST(Irradiance, Ellipse) {
   EXPECT_NEAR(radiance(scene), 2 / (1 + 2.25), 3e-3);  // L r^2/(r^2 + d^2)
 }
 
+// A light whose node is sheared: its shape is what the axes x and y span, it falls off by the angle to -z. Against the
+// midpoint rule over the shape.
+TEST(Irradiance, ShearedAreaLights) {
+  for (const bool ellipse : {false, true})
+    for (const float spread : {kPi<float>, 1.6f}) {
+      Scene scene = plane();
+      Light l;
+      l.type = LightType::kArea;
+      l.ellipse = ellipse;
+      l.emitted = {2, 2, 2};
+      l.sizeX = 1.6f;
+      l.spread = spread;
+      l.toWorld = {{1, 0.3f, 0.2f}, {0.5f, 0.8f, -0.1f}, {0.25f, -0.4f, 1.1f}, {-0.2f, 0.1f, 1.2f}};
+      scene.lights = {l};
+      const Vec3f x = l.toWorld.x * l.sizeX, y = l.toWorld.y, axis = normalize(l.toWorld.z);
+      constexpr int kSteps = 400;
+      double sum = 0;
+      for (int i = 0; i < kSteps; ++i)
+        for (int j = 0; j < kSteps; ++j) {
+          const float u = (static_cast<float>(i) + 0.5f) / kSteps - 0.5f,
+                      v = (static_cast<float>(j) + 0.5f) / kSteps - 0.5f;
+          if (ellipse && u * u + v * v > 0.25f) continue;
+          const Vec3f to = l.toWorld.t + x * u + y * v, d = normalize(to);
+          const double a = std::acos(double(dot(d, axis))), t = std::tan(double(spread) / 2);
+          const double profile = spread < 3 ? std::max(0.0, (t - std::tan(a)) / (t - double(spread) / 2)) : 1;
+          sum += profile * double(d.z) * std::cos(a) / double(dot(to, to));
+        }
+      const double irradiance = 2 * sum * double(length(cross(x, y))) / (kSteps * kSteps);
+      EXPECT_NEAR(radiance(scene) / (irradiance / kPid), 1, 3e-3) << ellipse << spread;
+    }
+}
+
 TEST(Irradiance, EmissiveMesh) {
   Scene scene = plane();
   Material m;
