@@ -203,10 +203,10 @@ class Materials(SceneTest):
         self.add_quad("With").data.materials.append(new)
         materials = {m.name: m for m in self.gather().materials}
         without, other = materials["(no material)"], materials["New"]
-        np.testing.assert_allclose(without.diffuse.value, other.diffuse.value, rtol=1e-6)
         if compat.VERSION < (5, 0, 0):
-            self.assertEqual(without.specular.value, (0, 0, 0))
+            self.assertEqual((without.diffuse.value, without.specular.value), ((0.8, 0.8, 0.8), (0, 0, 0)))
             return
+        np.testing.assert_allclose(without.diffuse.value, other.diffuse.value, rtol=1e-6)
         self.assertEqual(without.variant, other.variant)
         np.testing.assert_allclose(without.specular.value, other.specular.value, rtol=1e-6)
         self.assertEqual((without.alpha_x, without.alpha_y), (other.alpha_x, other.alpha_y))
