@@ -125,13 +125,14 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
                 Counts& counts, HitRecord* record, Continuations& continuations) {
   constexpr bool kSpec = (N & kNeedsSpecular) != 0, kDiff = (N & kNeedsDiffuse) != 0, kPath = (N & kNeedsBounces) != 0;
   const Surface& s = x.surface;
-  const bool specular = kSpec && s.hasSpecular(), diffuse = kDiff && s.hasDiffuse();
+  const Vec3f woFloat = x.frame.toLocal(x.wo);
+  // below its normal's horizon, which looks into the surface, the lobe is zero
+  const bool specular = kSpec && s.hasSpecular() && woFloat.z > 0, diffuse = kDiff && s.hasDiffuse();
   const bool split = plan.integrand == Integrand::kSplit;
   const Mixture mixture(plan.fractions, plan.samples, plan.weights);
   const uint32_t dimension = plan.vertex * kPerVertex;
   const std::array<int, kTechniques> n = systematicCounts(
       plan.fractions, plan.samples, sampler.spread1D(plan.pixelKey, dimension + kSampleCounts, plan.index));
-  const Vec3f woFloat = x.frame.toLocal(x.wo);
   const Vec3<T> wo{T(woFloat.x), T(woFloat.y), T(woFloat.z)};
 
   // Draw the directions of all techniques.
@@ -197,7 +198,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     const int set = (k - (t == kLobe ? 0 : t == kCosine ? endLobe : endCosine)) % kSets;
     ++counts.samples[t];
     const Vec3<T> wi = batch.wi(k);
-    if (!(wi.z > T(0))) continue;  // below the surface: zero, and it counts
+    if (!(wi.z > T(0)) || (t == kLobe && !specular)) continue;  // below the surface: zero, and it counts
     WardValue<T> ward{0, 0};
     if (specular) {
       ward = vectorised ? WardValue<T>{batch.specular[k], batch.lobe[k]} : evaluateWard(s, wi, wo);

@@ -101,16 +101,16 @@ Interaction interact(const Scene& scene, const Geometry& geometry, const Ray& ra
     const Vec3f n = placement.toWorld.normal(detail::interpolate(shape.part->normals, i, hit.u, hit.v));
     const float l2 = dot(n, n);
     if (l2 > 0) ns = n / std::sqrt(l2);
-    if (dot(ns, ng) < 0) ns = -ns;
   }
   if (dot(ng, x.wo) < 0) ng = -ng, ns = -ns;
   x.geometric = ng;
   x.clearance = detail::clearance(placement, shape, i, ng);
   if (!shape.part->normals.empty()) {
-    // A shading normal that looks away from the viewer is bent until it does not (else the silhouette turns black).
+    // A shading normal that looks away from the viewer is bent until it does not (else the silhouette turns black). One
+    // that looks into the surface is meant so: there is light where both it and the surface's own normal see it.
     constexpr float kGrazing = 1e-3f;
     const float facing = dot(ns, x.wo);
-    if (facing < kGrazing) ns = normalize(ns + x.wo * (kGrazing - facing));
+    if (facing < kGrazing && dot(ns, ng) > 0) ns = normalize(ns + x.wo * (kGrazing - facing));
   }
 
   // UVs are in the file only where a texture is looked up (the reader leaves the others out).
