@@ -9,6 +9,10 @@ from scenes.instances import geometry_nodes, particles
 from stage import Scene, ball, box, mesh, place, square, stage
 
 SCENES: list[Scene] = []
+# the objects that Cycles sees, all or in part, and this renderer does not
+NAMED = {"hair_strands": {"Fur"}, "nodes_without_a_mesh": {"Ball"}}
+if bpy.app.version >= (4, 0, 0):  # in 3.4 they cannot be filled from Python
+    NAMED["hair_curves"] = {"Curves"}
 
 
 def form(build):
@@ -21,7 +25,7 @@ def hair_strands():
     stage()
     made = mesh("Fur", *square(1.5))
     made.location.z = 0.3
-    particles(made, type="HAIR", render_type="PATH", hair_length=0.8, root_radius=8.0)
+    particles(made, type="HAIR", render_type="PATH", physics_type="NEWTON", hair_length=0.8, root_radius=8.0)
     made.show_instancer_for_render = True
 
 
@@ -31,7 +35,7 @@ def hair_curves():
     stage()
     data = bpy.data.hair_curves.new("Curves")
     made = place("Curves", data, (0, 0, 1))
-    if hasattr(data, "add_curves"):  # in 3.4 from Python they cannot be filled, and Cycles sees nothing
+    if "hair_curves" in NAMED:
         data.add_curves([3, 3])
         points = [(x, 0.1 * k, z) for k, x in enumerate((-0.8, 0.8)) for z in (-0.5, 0, 0.5)]
         data.attributes["position"].data.foreach_set("vector", np.array(points, np.float32).ravel())

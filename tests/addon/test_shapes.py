@@ -108,14 +108,18 @@ class Shapes(unittest.TestCase):
         tree = tree_of(exported)
         eye = scene.camera.matrix_world.translation
         wrong: dict[str, int] = {}
+        named = set()
         for y, x in zip(*np.nonzero(met)):
             place = Vector(places[y, x])
             hit = tree.ray_cast(eye, place - eye)[0]
             if hit is None or (hit - place).length > FAR:
                 name = names.get(int(indices[y, x]), "?")
-                if not any(f"'{name}'" in note for note in exported.notes):
+                if any(f"'{name}'" in note for note in exported.notes):
+                    named.add(name)
+                else:
                     wrong[name] = wrong.get(name, 0) + 1
         self.assertLessEqual(sum(wrong.values()), STRAY * met.sum(), f"points of Cycles that are not exported: {wrong}")
+        self.assertEqual(named, forms.NAMED.get(entry.build.__name__, set()), "what Cycles sees and a note names")
         self.assertEqual(self.seen_by_us_alone(exported, tree, met), 0, "pixels where Cycles sees nothing")
 
     def seen_by_us_alone(self, exported, tree, met) -> int:
@@ -134,6 +138,8 @@ def _add(entry) -> None:
     def test(self):
         if bpy.app.version[:2] < entry.since:
             self.skipTest(f"since Blender {entry.since}")
+        if entry.name == "deformation-fluid_domain" and bpy.app.version[:2] == (4, 3) and sys.version_info >= (3, 13):
+            self.skipTest("this Blender's fluids end it with this Python")
         self.check(entry)
 
     setattr(Shapes, f"test_{entry.name.replace('-', '_')}", test)

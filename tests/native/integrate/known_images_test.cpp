@@ -70,6 +70,23 @@ Affine lookingAtOrigin(Vec3f position) {
   return {f.x, f.y, f.z, position};
 }
 
+// Of a diffuse plane whose normals are tilted by an angle from its own, under a constant sky: the part of the cosine
+// lobe around them that is above the plane, (1 + cos a)/2. Beyond 90 degrees they look into the plane, and the rule is
+// the same.
+TEST(Irradiance, TiltedNormals) {
+  for (const float degrees : {0.0f, 40.0f, 80.0f, 110.0f, 150.0f, 180.0f})
+    for (const Rgb specular : {Rgb{0, 0, 0}, Rgb{0.3f, 0.3f, 0.3f}}) {
+      if (specular.x > 0 && degrees < 90) continue;  // the lobe is zero where the camera is below the normal's horizon
+      Scene scene = plane();
+      scene.materials[0].specular.value = specular;
+      scene.world.radiance = {1, 1, 1};
+      const float a = degrees * kPi<float> / 180;
+      const Vec3f n{0, std::sin(a), std::cos(a)};
+      scene.meshes[0].parts[0].normals = Array<Vec3f>::of(std::vector<Vec3f>(4, n));
+      EXPECT_NEAR(radiance(scene), (1 + std::cos(double(a))) / 2, 3e-3) << degrees;
+    }
+}
+
 TEST(Irradiance, ConstantSky) {
   Scene scene = plane();
   scene.world.radiance = {2, 2, 2};
