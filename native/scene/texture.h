@@ -82,12 +82,12 @@ inline TexelFall texelFall(float u, int n, Wrap wrap, bool nearest) {
     else
       u = std::fabs(u - 2 * static_cast<float>(floorOf(u * 0.5f + 0.5f)));
   }
-  const float outside = wrap == Wrap::kClip ? 4 : 0;        // further than any filter reaches: at least 2 texels
+  // further out than any filter reaches, which is two texels, nothing changes any more
+  const float outside = wrap == Wrap::kClip || wrap == Wrap::kClamp ? 4 : 0;
   u = u >= -outside ? std::min(u, 1 + outside) : -outside;  // NaN: as below
   const float x = u * static_cast<float>(n) - (nearest ? 0 : 0.5f);
   const int i = floorOf(x);
-  // u = 1 is the end of the last texel
-  if (nearest) return {u == 1 ? n - 1 : wrap == Wrap::kClip ? i : std::min(i, n - 1), 0};
+  if (nearest) return {u == 1 ? n - 1 : i, 0};  // u = 1 is the end of the last texel
   return {i, x - static_cast<float>(i)};
 }
 

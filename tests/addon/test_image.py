@@ -180,7 +180,7 @@ class Images(unittest.TestCase):
         image, _ = self.file("PNG")
         user = SimpleNamespace(frame_start=1, frame_offset=0, frame_duration=1, use_cyclic=False)
         for mode, color_space, alphas in (
-            ("STRAIGHT", "sRGB", ("multiplied", "kept")),
+            ("STRAIGHT", "sRGB", ("multiplied", "restored")),
             ("CHANNEL_PACKED", "sRGB", ("kept", "kept")),
             ("NONE", "sRGB", ("kept", "kept")),
             ("STRAIGHT", "Non-Color", ("kept", "kept")),

@@ -26,8 +26,7 @@ SIGNATURES = (
 )
 COLOR_SPACES = {"sRGB": "sRGB", "Linear": "linear", "Linear Rec.709": "linear", "Non-Color": "linear", "Raw": "linear"}
 DATA = {"Non-Color", "Raw"}  # no colours: alpha means nothing to them
-WITH_ALPHA = {16, 32, 128}  # bits of a pixel in the file
-GREY_AND_ALPHA = 16
+PNG_TYPE, GREY_WITH_ALPHA = 25, 4  # where a PNG says what its pixels are, and one such kind
 
 
 @dataclass(frozen=True)
@@ -44,7 +43,7 @@ class BakedImage:
 class Picture:
     """What an image node shows of an image, as Cycles does: which picture of a sequence, and what alpha does to the colours.
 
-    `alpha`: the colours are "kept" as they are stored, "multiplied" by it or "divided" by it.
+    `alpha`: the colours are "kept" as they are stored, "multiplied" by it, "divided" by it after they are filtered, or both, "restored".
     """
 
     image: Any
@@ -85,6 +84,12 @@ class Picture:
         head = self._file(16)
         return next((mime_type for signature, mime_type in SIGNATURES if head.startswith(signature)), "")
 
+    @property
+    def is_grey_with_alpha(self) -> bool:
+        """Of a PNG file; Cycles multiplies colours alone by alpha. Packed, the image is one of colours."""
+        is_file = self.mime_type == "image/png" and not self.image.packed_files
+        return is_file and self._file(PNG_TYPE + 1)[PNG_TYPE:] == bytes([GREY_WITH_ALPHA])
+
     def export(self) -> ImageData:
         """A missing one becomes a magenta texel."""
         if self.missing():
@@ -102,7 +107,8 @@ class Picture:
                 alpha_multiplies=multiplied,
             )
         space = "sRGB" if self.is_encoded else "linear"
-        return ImageData(self.name, space, pixels=self._stored(), filter_encoded=self.is_encoded)
+        pixels = self._stored("kept" if self.alpha == "restored" else self.alpha)
+        return ImageData(self.name, space, pixels=pixels, filter_encoded=self.is_encoded)
 
     def texels(self, filtered: Callable[[np.ndarray], np.ndarray] = lambda pixels: pixels) -> np.ndarray:
         """(height, width, 4) float32: linear RGBA, rows from the bottom; after `filtered` of what is stored, as floats."""
@@ -110,8 +116,10 @@ class Picture:
             return np.array([[(*MISSING, 1.0)]], np.float32)
         if 0 in self.image.size:  # a picture of a sequence that Blender has not looked at
             return np.array([[(0.5, 0.5, 0.5, 1.0)]], np.float32)
-        stored = self._stored()
+        stored = self._stored("kept" if self.alpha == "divided" else self.alpha)
         pixels = filtered(stored.astype(np.float32) / np.float32(255 if stored.dtype == np.uint8 else 1))
+        if self.alpha in {"divided", "restored"} and pixels.shape[2] == 4:
+            pixels = np.concatenate([_over_alpha(pixels), pixels[..., 3:]], axis=-1)
         height, width, channels = pixels.shape
         if channels < 3:
             pixels = np.repeat(pixels[..., :1], 3, axis=-1)
@@ -171,8 +179,11 @@ class Picture:
         except OSError:
             return b""
 
-    def _stored(self) -> np.ndarray:
-        """(height, width, channels) uint8, or float32 where the image is one or alpha divides: sRGB if `is_encoded`, else linear."""
+    def _stored(self, alpha: str) -> np.ndarray:
+        """(height, width, channels) uint8, or float32 where the image is one or alpha divides: sRGB if `is_encoded`, else linear.
+
+        To be "restored" they are multiplied here.
+        """
         image = self.image
         width, height = image.size
         pixels = np.empty(width * height * image.channels, np.float32)
@@ -184,9 +195,9 @@ class Picture:
             pixels = np.concatenate([_over_alpha(pixels), pixels[..., 3:]], axis=-1)
         if image.is_float and self.is_encoded:
             pixels = np.concatenate([encode_srgb(pixels[..., :3]), pixels[..., 3:]], axis=-1)
-        if image.channels < 4 or self.alpha == "kept":
+        if image.channels < 4 or alpha == "kept":
             return pixels
-        if self.alpha == "multiplied":
+        if alpha in {"multiplied", "restored"}:
             if pixels.dtype == np.uint8:
                 pixels[..., :3] = pixels[..., :3].astype(np.uint16) * pixels[..., 3:] // 255
             else:
@@ -203,14 +214,14 @@ def picture_of(image: Any, shows_alpha: bool, user: Any, scene_frame: int) -> Pi
     """
     alpha = "kept"
     space = image.colorspace_settings.name
-    if image.alpha_mode in {"STRAIGHT", "PREMUL"} and space not in DATA and image.depth in WITH_ALPHA:
+    if image.alpha_mode in {"STRAIGHT", "PREMUL"} and space not in DATA:
         integers = not image.is_float or Picture(image).mime_type == "image/png"
         is_done = (
             not integers
-            or image.depth == GREY_AND_ALPHA
+            or Picture(image).is_grey_with_alpha
             or (image.alpha_mode == "PREMUL" and compat.PREMULTIPLIED_FILES_ARE_TRUSTED)
         )
-        alpha = ("divided" if shows_alpha else "kept") if is_done else ("kept" if shows_alpha else "multiplied")
+        alpha = ("divided" if shows_alpha else "kept") if is_done else ("restored" if shows_alpha else "multiplied")
     return Picture(image, alpha, frame_of(user, scene_frame) if image.source == "SEQUENCE" else None)
 
 

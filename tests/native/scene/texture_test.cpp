@@ -72,6 +72,10 @@ TEST(Texture, CubicIsABSpline) {
   EXPECT_NEAR(lookUpScalar(step, cubic, {2.5f / 4, 0.5f}, 0), 1, 1e-5f);
   EXPECT_NEAR(lookUpScalar(step, cubic, {2 / 4.0f, 0.5f}, 0), 6 * 23 / 48.0f, 1e-5f);
   EXPECT_NEAR(lookUpScalar(step, cubic, {0, 0.5f}, 0), 6 / 48.0f, 1e-5f);  // of the four about 0 the last one: 1
+  const Texture clamp{0, Wrap::kClamp, Wrap::kClamp, Filter::kCubic};
+  const Image edge{"", 2, 1, 1, false, {}, {48, 0}};
+  EXPECT_NEAR(lookUpScalar(edge, clamp, {0, 0.5f}, 0), 47, 1e-4f);   // of the four about 0 one is the second
+  EXPECT_NEAR(lookUpScalar(edge, clamp, {-1, 0.5f}, 0), 48, 1e-4f);  // further out none
   const Texture mirror{0, Wrap::kMirror, Wrap::kMirror, Filter::kCubic};
   EXPECT_NEAR(lookUpScalar(step, mirror, {0, 0.5f}, 0), 2 * 6 / 48.0f, 1e-5f);  // 1 0 | 0 1
 }
