@@ -83,7 +83,9 @@ class WARDMIS_RENDER_PT_sampling(RenderPanel, bpy.types.Panel):
         column.prop(settings, settings.stop_by)
         column.separator()
         column.prop(settings, "sampler")
-        column.prop(settings, "seed")
+        row = column.row(align=True)
+        row.prop(settings, "seed")
+        row.prop(settings, "use_animated_seed", text="", icon="TIME")
 
 
 class WARDMIS_RENDER_PT_allocation(RenderPanel, bpy.types.Panel):

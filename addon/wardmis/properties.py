@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import bpy
-from bpy.props import EnumProperty, FloatProperty, IntProperty, PointerProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
+
+from . import light_paths
 
 # Each with its condition: when it is good, when it is not
 ALLOCATIONS = (
@@ -216,6 +218,11 @@ class WARDMIS_PG_scene(bpy.types.PropertyGroup):
         default="sobol",
     )
     seed: IntProperty(name="Seed", description="Another seed gives the same image with other noise", default=0, min=0)
+    use_animated_seed: BoolProperty(
+        name="Animated Seed",
+        description="Another seed in each frame, so that the noise does not stand still in an animation; as Cycles derives it",
+        default=False,
+    )
     filter_type: EnumProperty(
         name="Filter",
         description="How the samples near a pixel are weighed into it, as Cycles' Pixel Filter",
