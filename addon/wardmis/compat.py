@@ -153,6 +153,11 @@ def light_casts_shadow(light: Any) -> bool:
     return bool(getattr(*light_shadow_setting(light)))
 
 
+def max_bounces(light: Any) -> int:
+    """By which a path has come to the last surface that the light, or world, lights; it is Cycles' setting."""
+    return int(getattr(getattr(light, "cycles", None), "max_bounces", 1024))
+
+
 def light_has_soft_falloff(light: Any) -> bool:
     """Whether a point or spot light with a radius is a disk that faces the shading point (always, until the option came)."""
     return bool(getattr(light, "use_soft_falloff", True))

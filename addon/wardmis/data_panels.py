@@ -72,6 +72,9 @@ class WARDMIS_LIGHT_PT_light(LightPanel, bpy.types.Panel):
         column.separator()
         _draw_shape(column, light)
         column.prop(*compat.light_shadow_setting(light), text="Cast Shadow")
+        own = getattr(light, "cycles", None)  # the setting that the export reads
+        if hasattr(own, "max_bounces"):
+            column.prop(own, "max_bounces")
 
 
 def _draw_colour(column: Any, light: Any) -> None:

@@ -18,7 +18,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from . import compat, rendering, temporary, warnings
+from . import compat, light_paths, rendering, temporary, warnings
 from .export import ExportCancelled, ExportError, export_depsgraph
 from .export.camera import border, full_resolution
 from .exr import read_header, read_pass
@@ -26,6 +26,7 @@ from .passes import not_available, register_passes, wanted
 from .preferences import renderer_path
 from .process import Renderer, RendererError
 from .properties import ALLOCATIONS_WITH_PILOT
+from .seed import seed_of
 
 POLL_SECONDS = 0.1
 
@@ -197,7 +198,9 @@ class _Render:
             arguments += ["--preview", self.preview_path]
         arguments += ["--allocation", settings.allocation, "--weights", settings.weights]
         arguments += ["--integrand", settings.integrand, "--integrator", settings.integrator]
-        arguments += ["--sampler", settings.sampler, "--seed", settings.seed, "--max-depth", settings.max_depth]
+        arguments += ["--sampler", settings.sampler, "--seed", seed_of(self.scene)]
+        for option, value in light_paths.options(self.scene).items():
+            arguments += [f"--{option}", value]
         arguments += ["--samples-per-hit", settings.samples_per_hit]
         if settings.stop_by == "samples":
             arguments += ["--spp", settings.samples]

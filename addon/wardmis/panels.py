@@ -8,7 +8,9 @@ from typing import Any
 
 import bpy
 
+from . import light_paths
 from .engine import WARDMIS_RenderEngine
+from .layout import draw_text
 from .properties import ALLOCATIONS_WITH_PILOT
 
 ENGINE = WARDMIS_RenderEngine.bl_idname
@@ -109,7 +111,16 @@ class WARDMIS_RENDER_PT_light_paths(RenderPanel, bpy.types.Panel):
     def draw(self, context: Any) -> None:
         settings, column = context.scene.wardmis, self._column()
         column.prop(settings, "integrator")
-        _row(column, settings.integrator == "path").prop(settings, "max_depth")
+        follows = settings.integrator == "path"
+        _row(column, follows).prop(settings, "bounces")
+        if settings.bounces == "own":
+            for limit in ("max_depth", "max_diffuse", "max_glossy"):
+                _row(column, follows).prop(settings, limit)
+        limits, cycles = light_paths.in_force(context.scene), light_paths.of_cycles(context.scene)
+        if follows and settings.bounces == "cycles":
+            draw_text(column, f"Bounces of a path: {cycles}")
+        elif follows and light_paths.ends_sooner(cycles, limits):
+            draw_text(column, f"Cycles shows less light here, with bounces of {cycles}", icon="INFO")
 
 
 class WARDMIS_RENDER_PT_simplify(RenderPanel, bpy.types.Panel):

@@ -104,6 +104,14 @@ INTEGRATORS = (
     ("path", "Path", "All light, also that which comes by way of other surfaces, up to Max Depth of them"),
     ("direct", "Direct", "Only light that comes straight from lamps, the sky and glowing surfaces: faster, and darker"),
 )
+BOUNCES = (
+    ("own", "Own", "The limits given here; by default all light of paths of up to the given depth"),
+    (
+        "cycles",
+        "As Cycles",
+        "The limits that Cycles has in this scene, in its Light Paths panel: what it leaves out is left out here",
+    ),
+)
 STOPS = (
     ("samples", "Samples", "Stop after a number of samples in each pixel, however long they take"),
     (
@@ -210,6 +218,28 @@ class WARDMIS_PG_scene(bpy.types.PropertyGroup):
         min=1,
         soft_max=64,
         max=1024,
+    )
+    bounces: EnumProperty(
+        name="Bounces",
+        description="How far light is followed. Cycles' own default of 4 diffuse bounces darkens bright interiors",
+        items=BOUNCES,
+        default="own",
+    )
+    max_diffuse: IntProperty(
+        name="Max Diffuse",
+        description="Diffuse bounces of a path, as in Cycles: how often it may go on from a diffuse reflection",
+        default=light_paths.LONGEST,
+        min=0,
+        soft_max=64,
+        max=light_paths.LONGEST,
+    )
+    max_glossy: IntProperty(
+        name="Max Glossy",
+        description="Glossy bounces of a path, as in Cycles: how often it may go on from a reflection by a Ward lobe",
+        default=light_paths.LONGEST,
+        min=0,
+        soft_max=64,
+        max=light_paths.LONGEST,
     )
     sampler: EnumProperty(
         name="Sampler",

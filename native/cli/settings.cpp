@@ -73,7 +73,13 @@ void SettingOptions::add(CLI::App& app) {
                  "numbers; or 'measured' (the image then depends on the machine)")
       ->capture_default_str();
   app.add_option("--max-depth", numbers_.maxDepth, "surface hits of a path; 1 is direct light")
-      ->check(CLI::Range(1, 1024))
+      ->check(CLI::Range(1, kLongestPath))
+      ->capture_default_str();
+  app.add_option("--max-diffuse", numbers_.maxDiffuse, "diffuse bounces of a path, as Cycles counts them")
+      ->check(CLI::Range(0, kLongestPath))
+      ->capture_default_str();
+  app.add_option("--max-glossy", numbers_.maxGlossy, "glossy bounces of a path: those from samples of the lobe")
+      ->check(CLI::Range(0, kLongestPath))
       ->capture_default_str();
   app.add_option("--kernel", kernel_, "general: with everything compiled in; the image is the same")
       ->check(CLI::IsMember({"auto", "general"}))
@@ -135,6 +141,8 @@ nlohmann::json toJson(const RenderSettings& s) {
                    : s.costFrom == CostFrom::kMeasured ? nlohmann::json("measured")
                                                        : nlohmann::json(s.cost)},
           {"max_depth", s.maxDepth},
+          {"max_diffuse", s.maxDiffuse},
+          {"max_glossy", s.maxGlossy},
           {"kernel", s.generalKernel ? "general" : "auto"}};
 }
 

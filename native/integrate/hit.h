@@ -66,6 +66,15 @@ enum Dimension : uint32_t {
   kPerVertex
 };
 
+// How far paths go, as Cycles counts: surface hits, and how often one may go on from a sample of each technique. What a
+// ray meets where that is used up still gives its own light, and reflects none.
+struct PathLimits {
+  int depth = 1;
+  std::array<int, kTechniques> bounces{};
+
+  bool bounce() const { return depth > 1 && (bounces[kLobe] > 0 || bounces[kCosine] > 0); }
+};
+
 // How a hit is to be sampled.
 struct HitPlan {
   Fractions fractions{};  // of the techniques that this hit has
@@ -155,9 +164,10 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     }
   const int endCosine = j;
   for (int m = 0; m < n[kLight]; ++m, ++j) {
-    light.set(j,
-              world.emitters.sample(x.position, sampler.getChoice(plan.pixelKey, dimension + kLightPoint,
-                                                                  plan.firstPoint[kLight] + static_cast<uint32_t>(m))));
+    light.set(j, world.emitters.sample(x.position,
+                                       sampler.getChoice(plan.pixelKey, dimension + kLightPoint,
+                                                         plan.firstPoint[kLight] + static_cast<uint32_t>(m)),
+                                       static_cast<int>(plan.vertex)));
     const Vec3f wi = x.frame.toLocal(light[j].direction);
     batch.set(j, {T(wi.x), T(wi.y), T(wi.z)});
   }
@@ -258,7 +268,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     ray.kind = t == kLobe ? kSeenByGlossy : kSeenByDiffuse;
     ++(t == kLobe ? counts.lobeRays : counts.cosineRays);
     const Hit hit = world.accel.intersect(ray);
-    world.emitters.along(ray, hit.t, !hit.valid(), [&](const EmitterHit& e) {
+    world.emitters.along(ray, hit.t, !hit.valid(), static_cast<int>(plan.vertex), [&](const EmitterHit& e) {
       p[kLight] = e.pdf;
       add(t, fs, fd, e.radiance, p, e.visibility, set);
     });

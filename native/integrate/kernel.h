@@ -20,7 +20,8 @@ struct KernelInput {
   Weights weights;
   const CandidateLists& candidates;  // for `auto`
   SampleCost cost;                   // for `auto`
-  int samplesPerHit, depth;
+  int samplesPerHit;
+  PathLimits limits;
   bool lights;       // the light technique has something to aim at
   bool surfaceRays;  // rays of the surface's techniques can find light
   int x0, y0;        // of the border in the full frame

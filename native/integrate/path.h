@@ -31,20 +31,21 @@ Rgb estimate(const RenderScene& scene, const Sampler& sampler, const Interaction
   return estimateHit<N, float>(scene, sampler, x, plan, counts, record, more);
 }
 
-// Radiance reflected at the end of `first`, times its weight. index: of this path among the pixel's; depth: surface
-// hits of a path, the first one included.
+// Radiance reflected at the end of `first`, times its weight. index: of this path among the pixel's.
 template <uint32_t N>
 Rgb followPath(const RenderScene& scene, const Sampler& sampler, uint32_t pixelKey, uint32_t index,
-               const Continuation& first, int depth, Counts& counts) {
+               const Continuation& first, const PathLimits& limits, Counts& counts) {
   const bool lights = scene.emitters.any();
   Rgb sum{0, 0, 0};
+  std::array<int, kTechniques> left = limits.bounces;
+  if (--left[first.technique] < 0) return sum;
   Rgb weight = first.weight;
   float survived =
       1;  // product of the vertices' own weights: what the roulette looks at, whatever the first hit's counts
   Ray ray = first.ray;
   Hit hit = first.hit;
   const std::array<uint64_t, kTechniques> firstHitSamples = counts.samples;
-  for (int vertex = 1; vertex < depth; ++vertex) {
+  for (int vertex = 1; vertex < limits.depth; ++vertex) {
     const Interaction x = interact<N>(scene.scene, scene.geometry, ray, hit);
     const TechniqueMask mask = techniquesAt(x.surface, lights, true);
     if ((mask & ~maskOf(kLight)) == 0) break;  // reflects nothing
@@ -60,6 +61,7 @@ Rgb followPath(const RenderScene& scene, const Sampler& sampler, uint32_t pixelK
     sum += weight * estimate<N>(scene, sampler, x, plan, counts, nullptr, more);
     if (more.count == 0) break;
     const Continuation& next = more.list[0];
+    if (--left[next.technique] < 0) break;
     weight *= next.weight;
     survived *= maxComponent(next.weight);
     if (vertex >= 2) {

@@ -257,6 +257,14 @@ FilmBuffer renderInArena(const BuiltScene& built, const RenderSettings& settings
 
 }  // namespace
 
+PathLimits RenderSettings::limits() const {
+  PathLimits limits;
+  if (integrator == Integrator::kDirect) return limits;
+  limits.depth = maxDepth;
+  limits.bounces[kLobe] = maxGlossy, limits.bounces[kCosine] = maxDiffuse;
+  return limits;
+}
+
 double pilotApart(const RenderSettings& s) {
   return coarse(s) ? double(pilotOf(s, targetOf(s))) / (kCoarse * kCoarse) : 0;
 }

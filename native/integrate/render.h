@@ -14,6 +14,8 @@
 
 namespace wardmis {
 
+inline constexpr int kLongestPath = 1024;  // surface hits, and bounces of a kind
+
 enum class Integrator : uint8_t { kDirect, kPath };
 std::string_view name(Integrator);
 std::string_view name(SamplerType);
@@ -38,10 +40,13 @@ struct RenderSettings {
   CostFrom costFrom = CostFrom::kRays;  // of samples, for `auto`
   Fractions cost{1, 1, 1};              // of a lobe, cosine and light sample, where it is given
   int maxDepth = 8;                     // surface hits of a path
+  int maxDiffuse = kLongestPath;        // of them reached from a cosine sample, and not emitting alone: diffuse bounces
+  int maxGlossy = kLongestPath;         // from a lobe sample
   uint64_t seed = 0;
   int threads = 0;  // 0: all
   bool generalKernel = false;
 
+  PathLimits limits() const;
   Weights weightRule() const { return weights.value_or(paperWeights(allocation)); }
 };
 

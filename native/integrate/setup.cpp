@@ -28,7 +28,7 @@ int tilesAcross(int pixels) { return (pixels + kTileSize - 1) / kTileSize; }
 
 uint32_t needsOf(const BuiltScene& built, const RenderSettings& s) {
   uint32_t n = wardmis::needs(built.scene, built.geometry, built.emitters, s.integrand == Integrand::kJoint);
-  if (s.integrator == Integrator::kPath && s.maxDepth > 1) n |= kNeedsBounces;
+  if (s.limits().bounce()) n |= kNeedsBounces;
   return n;
 }
 
@@ -78,7 +78,7 @@ RenderSetup::RenderSetup(const BuiltScene& built, const RenderSettings& s)
             candidates_,
             {0, s.cost},
             s.samplesPerHit,
-            s.integrator == Integrator::kPath ? s.maxDepth : 1,
+            s.limits(),
             built.emitters.any(),
             surfaceRays(built, needs),
             built.scene.film.x0,

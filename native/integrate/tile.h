@@ -21,7 +21,7 @@ Rgb cameraSample(const KernelInput& in, const Ray& ray, uint32_t pixelKey, uint3
   const bool transparent = world.scene.film.transparent;
   Rgb sum{0, 0, 0};
   bool covered = hit.valid() || !transparent;
-  world.emitters.along(ray, hit.valid() ? hit.t : ray.tMax, !hit.valid() && !transparent, [&](const EmitterHit& e) {
+  world.emitters.along(ray, hit.valid() ? hit.t : ray.tMax, !hit.valid() && !transparent, 0, [&](const EmitterHit& e) {
     sum += e.radiance;
     covered = true;
   });
@@ -78,7 +78,7 @@ Rgb cameraSample(const KernelInput& in, const Ray& ray, uint32_t pixelKey, uint3
       const uint64_t rays = counts.rays();
       const Rgb value =
           followPath<N>(world, in.sampler, pixelKey,
-                        sample * static_cast<uint32_t>(plan.samples) + static_cast<uint32_t>(k), c, in.depth, counts);
+                        sample * static_cast<uint32_t>(plan.samples) + static_cast<uint32_t>(k), c, in.limits, counts);
       sum += value;
       counts.following[c.technique] += counts.rays() - rays;
       if (record)

@@ -16,8 +16,12 @@ namespace wardmis {
 using nlohmann::json;
 
 std::string estimates(const RenderSettings& s) {
-  return s.integrator == Integrator::kDirect || s.maxDepth == 1 ? "direct light"
-                                                                : fmt::format("paths, depth {}", s.maxDepth);
+  const PathLimits limits = s.limits();
+  if (!limits.bounce()) return "direct light";
+  std::string text = fmt::format("paths, depth {}", limits.depth);
+  for (const auto& [kind, bounces] : {std::pair{"diffuse", limits.bounces[kCosine]}, {"glossy", limits.bounces[kLobe]}})
+    if (bounces < limits.depth - 1) text += fmt::format(", {} {} bounces", bounces, kind);
+  return text;
 }
 
 void Reference::setVariance(std::vector<float> v) {

@@ -111,6 +111,7 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const Environment& en
     l.emitted = light.emitted;
     l.visibility = light.visibility;
     l.shadow = light.shadow;
+    l.maxBounces = light.maxBounces;
     l.center = light.toWorld.t;
     const double intensity = double(luminance(light.emitted));  // times an area: beyond float for the strongest
     double w = 0;
@@ -297,7 +298,7 @@ float Emitters::pdfRectangle(const Lamp& lamp, Vec3f from, float t, float cosLig
   return q.solidAngle > 1e-4f ? 1 / q.solidAngle : 0;
 }
 
-LightSample Emitters::sample(Vec3f from, ChoicePoint point) const {
+LightSample Emitters::sample(Vec3f from, ChoicePoint point, int bounces) const {
   LightSample s;
   const uint32_t index = table_.sample(point.x);
   const Vec2f u{toCoordinate(point.x), point.y};
@@ -332,6 +333,7 @@ LightSample Emitters::sample(Vec3f from, ChoicePoint point) const {
   }
 
   const Lamp& lamp = lamps_[index];
+  if (bounces > lamp.maxBounces) return s;
   switch (lamp.kind) {
     case Kind::kRectangle:
       s = sampleRectangle(lamp, from, u);

@@ -4,6 +4,8 @@
 // weighted for each by itself.
 #pragma once
 
+#include <limits>
+
 #include "scene/accel.h"
 #include "scene/alias.h"
 #include "scene/environment.h"
@@ -41,12 +43,14 @@ class Emitters {
   bool anyExclusive() const { return exclusive_; }
   uint64_t emissiveTriangles() const { return triangles_; }
 
-  LightSample sample(Vec3f from, ChoicePoint u) const;
+  // bounces: by which the path has come to `from`.
+  LightSample sample(Vec3f from, ChoicePoint u, int bounces = 0) const;
 
   // Calls f(EmitterHit) for each light object that the ray meets before tMax, and, where the ray goes on for ever
-  // (escaped), for the environment and suns.
+  // (escaped), for the environment and suns. bounces: by which the path has come to the ray's origin; 0 from the
+  // camera.
   template <class F>
-  void along(const Ray& ray, float tMax, bool escaped, F&& f) const;
+  void along(const Ray& ray, float tMax, bool escaped, int bounces, F&& f) const;
 
   // The emissive triangle that was hit.
   float trianglePdf(const Placement& p, const Hit& hit, Vec3f direction) const;
@@ -80,6 +84,7 @@ class Emitters {
     Affine toLocal{};  // spot: linear part only
     uint8_t visibility = kSeenByAll;
     bool shadow = true, exclusive = false;
+    int maxBounces = std::numeric_limits<int>::max();
   };
   float probability(size_t emitter) const {
     return table_.empty() ? 0 : table_.probability(static_cast<uint32_t>(emitter));
@@ -108,13 +113,13 @@ class Emitters {
 };
 
 template <class F>
-void Emitters::along(const Ray& ray, float tMax, bool escaped, F&& f) const {
+void Emitters::along(const Ray& ray, float tMax, bool escaped, int bounces, F&& f) const {
   EmitterHit hit;
   for (uint32_t i : finite_)
-    if (meets(lamps_[i], i, ray, tMax, hit)) f(hit);
+    if (bounces <= lamps_[i].maxBounces && meets(lamps_[i], i, ray, tMax, hit)) f(hit);
   if (!escaped) return;
   for (uint32_t i : infinite_)
-    if (meets(lamps_[i], i, ray, tMax, hit)) f(hit);
+    if (bounces <= lamps_[i].maxBounces && meets(lamps_[i], i, ray, tMax, hit)) f(hit);
 }
 
 }  // namespace wardmis

@@ -24,6 +24,7 @@ std::optional<Light> readLight(const Json& json, const Affine& toWorld) {
   Light light;
   light.name = json.name();
   light.type = json.at("type").choice(kTypes);
+  light.maxBounces = static_cast<int>(json.integerOr("maxBounces", light.maxBounces, 0, 1 << 20));
   light.toWorld = toWorld;
   light.shadow = json.booleanOr("shadow", true);
   const Rgb color = json.colorOr("color", {1, 1, 1});

@@ -135,6 +135,7 @@ struct Light {
   bool cosine = false;
   uint8_t visibility = kSeenByAll;
   bool shadow = true;
+  int maxBounces = 1024;  // it lights surfaces that a path has reached by at most so many
 };
 
 struct Camera {

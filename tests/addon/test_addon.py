@@ -78,6 +78,8 @@ class Settings(unittest.TestCase):
             ("--pilot-spp P", "pilot_samples"),
             ("--min-fraction A", "min_fraction"),
             ("--max-depth D", "max_depth"),
+            ("--max-diffuse B", "max_diffuse"),
+            ("--max-glossy B", "max_glossy"),
         ):
             line = next(line for line in COMMAND.splitlines() if line.startswith(f"| `{option}`"))
             default = float(re.search(r"\(([\d.]+)\)", line.split("|")[2])[1])

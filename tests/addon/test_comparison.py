@@ -19,7 +19,7 @@ import numpy as np
 import wardmis
 from comparison_support import SMALL, ComparisonTest
 from support import ADDON, FAKE, HERE, read_exr
-from wardmis import lock
+from wardmis import light_paths, lock
 from wardmis.comparison import converge, cycles, cycles_settings
 from wardmis.comparison.manifest import Manifest
 from wardmis.comparison.overrides import overridden
@@ -269,19 +269,42 @@ class CyclesSettings(ComparisonTest):
         self.assertEqual(seen["device"], "CPU")
         self.assertEqual(self.manifest()["name"], "Cycles as set")
 
-    def test_bounces_are_the_depth_less_one(self):
-        settings = self.scene.wardmis
-        settings.max_depth = 8
-        self.assertEqual(cycles_settings.bounces_of(settings), 7)
-        settings.integrator = "direct"
-        self.assertEqual(cycles_settings.bounces_of(settings), 0)
+    def test_limits_are_the_same_in_both_and_that_is_said(self):
+        settings, cycles = self.scene.wardmis, self.scene.cycles
+        cycles.max_bounces, cycles.diffuse_bounces, cycles.glossy_bounces = 9, 2, 3
+        for changes, expected, options in (
+            ({"max_depth": 8}, (7, 1024, 1024), ["--max-depth", "8"]),
+            ({"max_diffuse": 1}, (7, 1, 1024), ["--max-depth", "8", "--max-diffuse", "1"]),
+            ({"bounces": "cycles"}, (9, 2, 3), ["--max-depth", "10", "--max-diffuse", "2", "--max-glossy", "3"]),
+            ({"integrator": "direct"}, (0, 0, 0), []),
+        ):
+            for name, value in changes.items():
+                setattr(settings, name, value)
+            seen = self.during_a_render()
+            self.assertEqual(tuple(seen[f"{kind}_bounces"] for kind in ("max", "diffuse", "glossy")), expected)
+            arguments = " ".join(self.calls()[-1])
+            self.assertIn(" ".join(options), arguments)
+            said = f"paths end after the same bounces in both: {light_paths.Bounces(*expected)}"
+            self.assertIn(said, self.manifest()["notes"])
+            shutil.rmtree(self.folder)
+        self.assertEqual(cycles.diffuse_bounces, 2)  # still the user's
+
+    def test_limits_that_differ_are_said(self):
+        self.scene.cycles.use_denoising = False
+        self.during_a_render(as_is=True)
+        said = "Cycles' paths have bounces of 12 in all, 4 diffuse, 4 glossy, WardMIS' of 7 in all, 7 diffuse, 7 glossy"
+        self.assertIn(said, " ".join(self.manifest()["notes"]))
+        shutil.rmtree(self.folder)
+        self.scene.wardmis.bounces = "cycles"
+        self.during_a_render(as_is=True)
+        self.assertNotIn("Cycles' paths", " ".join(self.manifest()["notes"]))
 
     def test_every_setting_exists(self):
         film = {"filter": {"type": "box", "width": 1.0}, "exposure": 1.0}
         later = {"media_type", "use_exr_interleave", "use_fast_gi"}
         settings = [
             *cycles_settings.frame(self.scene, bpy.context.view_layer, film, 2),
-            *cycles_settings.unbiased(self.scene, 7),
+            *cycles_settings.unbiased(self.scene, light_paths.Bounces(7, 7, 7)),
         ]
         for owner, name, _ in settings:
             if owner in (self.scene.render, self.scene.cycles, self.scene.render.image_settings) and name not in later:

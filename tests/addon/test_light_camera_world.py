@@ -201,8 +201,10 @@ class Lights(SceneTest):
             obj.data.cycles.cast_shadow = False
         else:
             obj.data.use_shadow = False
+        obj.data.cycles.max_bounces = 3
         light = self.only()
         self.assertFalse(light.shadow)
+        self.assertEqual(light.max_bounces, 3)
         self.assertEqual(light.hidden_from, {"camera", "glossy"})
 
 

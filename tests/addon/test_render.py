@@ -13,6 +13,7 @@ from pathlib import Path
 import bpy
 from support import HERE, RenderTest, blender, exr_attributes, read_exr
 from wardmis.lock import alone
+from wardmis.seed import animated
 
 MULTILAYER = """
 image = scene.render.image_settings
@@ -220,6 +221,21 @@ class Arguments(RenderTest):
         self.assertEqual(arguments[arguments.index("--threads") + 1], "3")
         self.assertNotIn("--spp", arguments)
 
+    def test_bounces_reach_the_command(self):
+        limits = "s.max_depth, s.max_diffuse, s.max_glossy = 6, 2, 5\n"
+        cycles = (
+            "c = scene.cycles\nc.max_bounces, c.diffuse_bounces, c.glossy_bounces = 7, 3, 0\ns.bounces = 'cycles'\n"
+        )
+        for changes, options in (
+            ("", "--max-depth 8"),
+            (limits, "--max-depth 6 --max-diffuse 2"),  # 5 is all of them
+            (limits + cycles, "--max-depth 8 --max-diffuse 3 --max-glossy 0"),
+            ("s.bounces = 'cycles'\n", "--max-depth 13 --max-diffuse 4 --max-glossy 4"),
+        ):
+            run = self.run_blender("s = scene.wardmis\n" + changes)
+            words = [w for w in " ".join(run.calls[-1]["arguments"]).split(" --") if w.startswith("max-")]
+            self.assertEqual("--" + " --".join(words), options)
+
 
 class Animation(RenderTest):
     def test_animation_leaves_nothing_behind(self):
@@ -228,6 +244,16 @@ class Animation(RenderTest):
         self.assertEqual([p.name for p in run.images], ["image_0001.png", "image_0002.png", "image_0003.png"])
         self.assertEqual(len(run.calls), 3)
         self.assertEqual(run.left_over, [])
+
+    def test_seeds_stand_still_unless_they_are_animated(self):
+        frames = "scene.frame_start, scene.frame_end = 3, 5\nscene.wardmis.seed = 9\n"
+        for changes, seeds in (
+            ("", ["9", "9", "9"]),
+            ("scene.wardmis.use_animated_seed = True\n", [str(animated(9, frame)) for frame in (3, 4, 5)]),
+        ):
+            run = self.run_blender(frames + changes, "--render-anim")
+            arguments = [call["arguments"] for call in run.calls[-3:]]
+            self.assertEqual([a[a.index("--seed") + 1] for a in arguments], seeds, run.output)
 
     def test_animation_ends_with_its_first_failure(self):
         run = self.run_blender("scene.frame_end = 3\n", "--render-anim", fake="exit3")

@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from .. import light_paths
+
 OWN = "scene"  # the configuration that the scene's own settings are
 DEFAULT_CONFIGURATIONS = ("equal", "variance", "second-moment", "auto")
 
@@ -83,7 +85,9 @@ def arguments(study: Study, settings: Any, outcome: Outcome) -> list[str]:
     result += ["--weights", "auto", "--integrand", settings.integrand, "--integrator", settings.integrator]
     result += ["--sampler", settings.sampler, "--samples-per-hit", settings.samples_per_hit]
     result += ["--pilot-spp", settings.pilot_samples, "--min-fraction", f"{settings.min_fraction:.6g}"]
-    result += ["--max-depth", settings.max_depth, "--seeds", study.seeds, "--seed", study.first_seed]
+    for option, limit in light_paths.options(settings.id_data).items():
+        result += [f"--{option}", limit]
+    result += ["--seeds", study.seeds, "--seed", study.first_seed]
     if study.budget_seconds is not None:
         result += ["--budget-seconds", f"{study.budget_seconds:.6g}"]
     else:
@@ -113,6 +117,6 @@ def own_specification(settings: Any) -> str:
         "samples-per-hit": settings.samples_per_hit,
         "pilot-spp": settings.pilot_samples,
         "min-fraction": f"{settings.min_fraction:.6g}",
-        "max-depth": settings.max_depth,
+        **light_paths.options(settings.id_data),
     }
     return f"{OWN}:" + ",".join(f"{key}={value}" for key, value in pairs.items())

@@ -19,6 +19,7 @@ from typing import Any
 
 import bpy
 
+from .. import light_paths
 from ..exr import read_header
 from ..lock import alone
 from . import cycles_settings, interrupt
@@ -78,7 +79,7 @@ def render_cycles(folder: Path, scene_file: SceneFile, plan: CyclesPlan, progres
     settings = list(cycles_settings.frame(scene, layer, scene_file.film, plan.threads))
     lost = []  # of the settings that are to be kept
     if not plan.as_is:
-        settings += cycles_settings.unbiased(scene, cycles_settings.bounces_of(scene.wardmis))
+        settings += cycles_settings.unbiased(scene, light_paths.in_force(scene))
     elif cycles_settings.lacks_denoiser(scene):
         settings.append((scene.cycles, "use_denoising", False))
         lost.append(WITHOUT_DENOISER)
@@ -105,7 +106,13 @@ def _about(scene: Any, layer: Any, scene_file: SceneFile, plan: CyclesPlan, lost
             "Cycles' settings are the scene's own, with whatever bias they bring; only filter, frame, seed and samples are set"
         )
         notes += lost
+        own, limits = light_paths.of_cycles(scene), light_paths.in_force(scene)
+        if light_paths.ends_sooner(own, limits) or light_paths.ends_sooner(limits, own):
+            notes.append(
+                f"Cycles' paths have bounces of {own}, WardMIS' of {limits}: the same with its Bounces set to As Cycles"
+            )
     else:
+        notes.append(f"paths end after the same bounces in both: {light_paths.in_force(scene)}")
         notes.append(
             "clamping, filtered glossiness, light threshold, adaptive sampling, denoising, fast GI and shadow terminator offsets are off; "
             "the first sample of Cycles' sequence, which lies in the middle of each pixel whatever the filter, is left out"

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from .. import compat
+from ..light_paths import Bounces
 from .overrides import Setting
 
 FILTERS = {"box": "BOX", "gaussian": "GAUSSIAN", "blackman-harris": "BLACKMAN_HARRIS"}
@@ -51,7 +52,7 @@ def samples(scene: Any, spp: int, seed: int, as_is: bool) -> Iterator[Setting]:
     yield from compat.cycles_samples(scene.cycles, 0 if as_is else LATER_SAMPLES, spp)
 
 
-def unbiased(scene: Any, bounces: int) -> Iterator[Setting]:
+def unbiased(scene: Any, bounces: Bounces) -> Iterator[Setting]:
     """Everything off by which Cycles' image, as its settings come, differs from the integral: it would pass for an error of the
     sampling, or hide it. Light paths as long as WardMIS'."""
     cycles = scene.cycles
@@ -69,8 +70,10 @@ def unbiased(scene: Any, bounces: int) -> Iterator[Setting]:
     yield cycles, "use_camera_cull", False
     yield cycles, "use_distance_cull", False
     yield scene.render, "use_motion_blur", False
-    for kind in ("max", "diffuse", "glossy", "transmission"):
-        yield cycles, f"{kind}_bounces", bounces
+    yield cycles, "max_bounces", bounces.total
+    yield cycles, "transmission_bounces", bounces.total
+    yield cycles, "diffuse_bounces", bounces.diffuse
+    yield cycles, "glossy_bounces", bounces.glossy
     # Cycles moves the shadows' rays away from smooth surfaces
     for obj in scene.objects:
         owner = compat.shadow_terminator_owner(obj)
@@ -84,11 +87,6 @@ def lacks_denoiser(scene: Any) -> bool:
 
     cycles = scene.cycles
     return bool(cycles.use_denoising and cycles.denoiser != "OPTIX" and not _cycles.with_openimagedenoise)
-
-
-def bounces_of(settings: Any) -> int:
-    """Cycles' number for WardMIS' depth, which counts the surfaces that a path hits, the first one included."""
-    return 0 if settings.integrator == "direct" else settings.max_depth - 1
 
 
 def described(scene: Any) -> dict[str, Any]:

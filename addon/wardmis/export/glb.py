@@ -388,6 +388,7 @@ def _light(light: LightData) -> dict[str, Any]:
         "type": light.type,
         "color": list(light.color),
         "shadow": light.shadow,
+        "maxBounces": light.max_bounces,
     }
     if light.type == "area":
         result |= {"shape": light.shape, "size": list(light.size), "radiance": light.emission, "spread": light.spread}

@@ -40,6 +40,7 @@ def export_light(
         return None
     data = LightData(name, light.type.lower(), matrix, color, 0.0, hidden_from=hidden_from)
     data.shadow = compat.light_casts_shadow(light)
+    data.max_bounces = compat.max_bounces(light)
     {"AREA": _area, "POINT": _point, "SPOT": _spot, "SUN": _sun}[light.type](light, power, data)
     if math.isinf(data.emission):
         context.note(f"light '{light.name}': its area is zero, so that it gives no light; set a size or a scale")

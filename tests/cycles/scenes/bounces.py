@@ -2,8 +2,11 @@
 """Light that comes by way of several surfaces."""
 
 import math
+from collections.abc import Callable
+from typing import Any
 
-from stage import ball, box, camera, diffuse, floor, lamp, mesh, scene, square
+import bpy
+from stage import ball, box, camera, diffuse, floor, lamp, material, mesh, scene, square
 
 
 @scene(bounces=4)
@@ -22,3 +25,51 @@ def room():
         wall.location, wall.rotation_euler = location, rotation
     lamp("AREA", (0.5, -0.5, 4.5), 200, target=(0.3, 0, 0), shape="RECTANGLE", size=2, size_y=1)
     camera()
+
+
+def mirror() -> Any:
+    """A Ward lobe so narrow that it is also Cycles'."""
+    made, tree, output = material()
+    node = tree.nodes.new("WardBSDFNode")
+    node.inputs["Diffuse Color"].default_value = 0, 0, 0, 1
+    node.inputs["Specular Color"].default_value = 0.9, 0.9, 0.9, 1
+    node.inputs["Alpha X"].default_value = node.inputs["Alpha Y"].default_value = 0.005
+    tree.links.new(node.outputs[0], output.inputs["Surface"])
+    return made
+
+
+def interior(mirrors: bool = False) -> None:
+    """A closed room of bright walls, most of whose light comes by many bounces. `mirrors`: two walls that face each other."""
+    grey = (0.9, 0.9, 0.9)
+    for color, location, rotation in (
+        (grey, (0, 0, 0), (0, 0, 0)),
+        ((0.9, 0.6, 0.6), (-3, 0, 3), (0, math.pi / 2, 0)),
+        ((0.6, 0.9, 0.6), (3, 0, 3), (0, -math.pi / 2, 0)),
+        (grey, (0, 3, 3), (math.pi / 2, 0, 0)),
+        (grey, (0, -3, 3), (-math.pi / 2, 0, 0)),
+        (grey, (0, 0, 6), (math.pi, 0, 0)),
+    ):
+        shows = mirrors and location[0] != 0
+        wall = mesh("Wall", *square(6), mirror() if shows else diffuse(color))
+        wall.location, wall.rotation_euler = location, rotation
+    box(location=(1, 1, 1), scale=(0.7, 0.7, 1))
+    camera((-1.5, -2.6, 3.4), (1.2, 2, 1.5), lens=28)
+
+
+def limited(diffuse_bounces: int, glossy_bounces: int) -> None:
+    """Cycles' limits by kind, in both."""
+    settings = bpy.context.scene
+    settings.cycles.diffuse_bounces, settings.cycles.glossy_bounces = diffuse_bounces, glossy_bounces
+    settings.wardmis.bounces = "cycles"
+    lamp("AREA", (0.5, 0.5, 5.5), 100, target=(0.3, 0.4, 0), shape="RECTANGLE", size=2, size_y=1)
+
+
+def enter(name: str, build: Callable[[], None]) -> None:
+    build.__name__ = name
+    scene(bounces=12)(build)
+
+
+for count in (0, 1, 2, 4):
+    enter(f"diffuse_{count}", lambda count=count: (interior(), limited(count, 4)))
+for count in (0, 1, 4):
+    enter(f"glossy_{count}", lambda count=count: (interior(mirrors=True), limited(2, count)))
