@@ -175,7 +175,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
   if (vectorised) evaluate(s, wo, batch, j);
 
   const auto note = [&](bool second, Rgb f, const Fractions& p, TechniqueMask used, int set) {
-    if (record != nullptr) record->add(second, luminance(f), p, mixture.n, used, set);
+    if (record != nullptr) record->add(second, std::abs(luminance(f)), p, mixture.n, used, set);
   };
 
   // One sample's share of an emitter's light, by MIS over the techniques of each integral.
@@ -200,7 +200,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       note(true, f, p, kDiffuseTechniques, set);
     }
     if (record != nullptr && record->candidates != nullptr)
-      record->candidates->addBoth(luminance(fs * radiance), luminance(fd * radiance), p, mixture.n);
+      record->candidates->addBoth(std::abs(luminance(fs * radiance)), std::abs(luminance(fd * radiance)), p, mixture.n);
   };
 
   for (int k = 0; k < j; ++k) {
@@ -221,7 +221,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
 
     if (t == kLight) {
       const LightSample& l = light[k];
-      if (!(l.pdf > 0) || !(dot(x.geometric, l.direction) > 0) || !(maxComponent(l.radiance) > 0)) continue;
+      if (!(l.pdf > 0) || !(dot(x.geometric, l.direction) > 0) || isBlack(l.radiance)) continue;
       if (!(maxComponent(fs + fd) > 0)) continue;
       Ray shadow;
       shadow.origin = x.leave(l.direction);
@@ -275,7 +275,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     if (!hit.valid()) continue;
     const Shape& shape = world.geometry.shapes[hit.shape];
     const Material& m = world.scene.materials[static_cast<size_t>(shape.material)];
-    if (maxComponent(m.emission.value) > 0) {
+    if (!isBlack(m.emission.value)) {
       p[kLight] = world.emitters.trianglePdf(world.geometry.placements[hit.placement], hit, d);
       const Rgb radiance = interact<N>(world.scene, world.geometry, ray, hit).emission;
       add(t, fs, fd, radiance, p, world.geometry.placements[hit.placement].visibility, set);

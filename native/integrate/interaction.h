@@ -126,7 +126,7 @@ Interaction interact(const Scene& scene, const Geometry& geometry, const Ray& ra
     x.surface.ay = alpha(m.alphaY);
     x.surface.variant = m.variant;
   }
-  if (maxComponent(m.emission.value) > 0) x.emission = color(m.emission);
+  if (!isBlack(m.emission.value)) x.emission = color(m.emission);
 
   if ((N & kNeedsSpecular) != 0 && x.surface.ax != x.surface.ay) {
     const Framef f = Framef::around(ns, detail::tangent(placement, shape, i, x.position));

@@ -7,6 +7,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 
@@ -35,6 +36,21 @@ uint32_t needsOf(const BuiltScene& built, const RenderSettings& s) {
 // Whether rays of the surface's techniques can find light.
 bool surfaceRays(const BuiltScene& built, uint32_t needs) {
   return built.emitters.anyShared() || built.environment.exists() || (needs & kNeedsBounces) != 0;
+}
+
+// Whether there is light that takes away from other light.
+bool negativeLight(const Scene& scene) {
+  const auto negative = [](Rgb c) { return c.x < 0 || c.y < 0 || c.z < 0; };
+  const auto texels = [&](int texture) {
+    if (texture < 0) return false;
+    const auto& floats = scene.images[static_cast<size_t>(scene.textures[static_cast<size_t>(texture)].image)].floats;
+    return std::any_of(floats.begin(), floats.end(), [](float x) { return x < 0; });
+  };
+  for (const Light& l : scene.lights)
+    if (negative(l.emitted)) return true;
+  for (const Material& m : scene.materials)
+    if (negative(m.emission.value) || (!isBlack(m.emission.value) && texels(m.emission.texture.texture))) return true;
+  return negative(scene.world.radiance) || (!isBlack(scene.world.radiance) && texels(scene.world.texture));
 }
 
 TechniqueMask techniquesOf(const BuiltScene& built, uint32_t needs) {
@@ -81,6 +97,7 @@ RenderSetup::RenderSetup(const BuiltScene& built, const RenderSettings& s)
             s.limits(),
             built.emitters.any(),
             surfaceRays(built, needs),
+            negativeLight(built.scene) ? -3.4e38f : 0.0f,
             built.scene.film.x0,
             built.scene.film.y0},
       kernel(tileKernel(kernelNeeds)) {}

@@ -82,8 +82,8 @@ Rgb cameraSample(const KernelInput& in, const Ray& ray, uint32_t pixelKey, uint3
       sum += value;
       counts.following[c.technique] += counts.rays() - rays;
       if (record)
-        record->add(plan.integrand == Integrand::kSplit && c.technique == kCosine, luminance(value) / c.scale, c.p, n,
-                    techniquesFor(plan.integrand, c.technique), c.set);
+        record->add(plan.integrand == Integrand::kSplit && c.technique == kCosine, std::abs(luminance(value)) / c.scale,
+                    c.p, n, techniquesFor(plan.integrand, c.technique), c.set);
     }
   }
   if (candidate) candidate->addTo(*candidates, in.cost);
@@ -111,7 +111,7 @@ void renderTile(const KernelInput& in, const Tile& tile, FilmBuffer& film, Pilot
                                       static_cast<float>(py) + side * (0.5f + offset.y), lens);
         const Rgb value =
             cameraSample<N>(in, ray, key, s, allocated, pixel, pilotPixel, moments, candidates, counts) * exposure;
-        if (counts.rare.admit(value)) pixel.add(value);
+        if (counts.rare.admit(value, in.least)) pixel.add(value);
       }
     }
 }

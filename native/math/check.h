@@ -20,10 +20,10 @@ struct RareCounts {
     negative += b.negative;
     return *this;
   }
-  // True if the sample may enter the image. One comparison when it may.
-  bool admit(Rgb v) {
+  // True if the sample may enter the image. least: 0, and less than any number where a light is negative.
+  bool admit(Rgb v, float least = 0) {
     const float lo = std::min(v.x, std::min(v.y, v.z)), sum = v.x + v.y + v.z;
-    if (lo >= 0 && sum <= 3.4e38f && !(sum != sum)) return true;
+    if (lo >= least && sum <= 3.4e38f && !(sum != sum)) return true;
     if (sum != sum)
       ++nan;
     else if (!(sum <= 3.4e38f) || !(sum >= -3.4e38f))

@@ -23,14 +23,14 @@ class TriangleLuminance {
   // own mean.
   double of(const Shape& s, uint32_t triangle) {
     const ColorInput& e = scene_.materials[static_cast<size_t>(s.material)].emission;
-    if (e.texture.texture < 0 || s.part->uvs.empty()) return luminance(e.value);
+    if (e.texture.texture < 0 || s.part->uvs.empty()) return double(strength(e.value));
     const uint32_t* i = s.indices + 3 * size_t{triangle};
     const Vec2f a = s.part->uvs[i[0]], b = s.part->uvs[i[1]], c = s.part->uvs[i[2]];
     const int n = divisions(e.texture, a, b, c);
     const auto at = [&](float u, float v) {
       const float w = 1 - u - v;
       const Vec2f uv{w * a.x + u * b.x + v * c.x, w * a.y + u * b.y + v * c.y};
-      return double(std::max(0.0f, luminance(e.value * sampleRgb(scene_, e.texture, uv))));
+      return double(strength(e.value * sampleRgb(scene_, e.texture, uv)));
     };
     double sum = 0;
     for (int y = 0; y < n; ++y)
@@ -62,10 +62,10 @@ class TriangleLuminance {
       const Image& texels = image(e.texture.texture);
       const size_t count = static_cast<size_t>(texels.width) * static_cast<size_t>(texels.height);
       known = 0;
-      for (size_t i = 0; i < count; ++i) known += double(std::max(0.0f, luminance(texelRgb(texels, i))));
+      for (size_t i = 0; i < count; ++i) known += double(strength(texelRgb(texels, i)));
       known /= static_cast<double>(count);
     }
-    return known * luminance(e.value);
+    return known * double(strength(e.value));
   }
 
   const Scene& scene_;
@@ -106,14 +106,14 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const Environment& en
   std::vector<double> power;
 
   for (const Light& light : scene.lights) {
-    if (!(maxComponent(light.emitted) > 0)) continue;
+    if (isBlack(light.emitted)) continue;
     Lamp l{};
     l.emitted = light.emitted;
     l.visibility = light.visibility;
     l.shadow = light.shadow;
     l.maxBounces = light.maxBounces;
     l.center = light.toWorld.t;
-    const double intensity = double(luminance(light.emitted));  // times an area: beyond float for the strongest
+    const double intensity = double(strength(light.emitted));  // times an area: beyond float for the strongest
     double w = 0;
     switch (light.type) {
       case LightType::kArea: {
@@ -197,7 +197,7 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const Environment& en
     uint32_t offset = 0;
     for (uint32_t s = placement.firstShape; s < placement.firstShape + placement.shapes; ++s) {
       Shape& shape = geometry.shapes[s];
-      if (!(maxComponent(scene.materials[static_cast<size_t>(shape.material)].emission.value) > 0)) continue;
+      if (isBlack(scene.materials[static_cast<size_t>(shape.material)].emission.value)) continue;
       shape.emitterOffset = offset;
       offset += shape.triangles;
       std::vector<float>& strength = ofShape[s];

@@ -33,10 +33,10 @@ Environment::Environment(const Scene& scene) : scene_(scene) {
   for (int i = 0; i < 9; ++i) inverse_[i] = c[i] / det;
   determinant_ = std::abs(det);
 
-  exists_ = maxComponent(world.radiance) > 0;
+  exists_ = !isBlack(world.radiance);
   if (!exists_) return;
   if (world.texture < 0) {
-    integral_ = 4 * kPi<float> * luminance(world.radiance);
+    integral_ = 4 * kPi<float> * strength(world.radiance);
     return;
   }
 
@@ -65,7 +65,7 @@ Environment::Environment(const Scene& scene) : scene_(scene) {
               (static_cast<float>(x) + (static_cast<float>(i)) / static_cast<float>(subX)) / static_cast<float>(width_);
           const float v = (static_cast<float>(y) + (static_cast<float>(j)) / static_cast<float>(subY)) /
                           static_cast<float>(height_);
-          sum += std::max(0.0f, luminance(sampleRgb(scene, use, {u, v}) * world.radiance));
+          sum += strength(sampleRgb(scene, use, {u, v}) * world.radiance);
         }
       const float stretched = stretch(toImage(fromImage(inCell(x, static_cast<size_t>(y), 0.5f, 0.5f))));
       weights[static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x)] =

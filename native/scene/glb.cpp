@@ -126,8 +126,8 @@ Scene read(const Bytes& file, const std::filesystem::path& folder, const std::st
     }
     if (const auto world = own->find("world")) {
       const auto texture = world->find("texture");
-      scene.world.radiance = world->colorOr("radiance", texture ? Rgb{1, 1, 1} : Rgb{0, 0, 0});
-      if (texture && maxComponent(scene.world.radiance) > 0) {
+      scene.world.radiance = world->lightOr("radiance", texture ? Rgb{1, 1, 1} : Rgb{0, 0, 0});
+      if (texture && !isBlack(scene.world.radiance)) {
         materials.useWorldTexture(texture->at("index"));
         if (const auto matrix = texture->find("matrix")) readWorldMatrix(*matrix, scene.world.matrix);
       }

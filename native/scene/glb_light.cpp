@@ -11,7 +11,7 @@ namespace {
 // Whether it emits anything at all.
 std::optional<Light> emitting(const Json& json, const Light& light) {
   if (!isFinite(light.emitted)) json.fail("its power is not a number of single precision");
-  if (maxComponent(light.emitted) == 0) return std::nullopt;
+  if (isBlack(light.emitted)) return std::nullopt;
   return light;
 }
 
@@ -27,10 +27,10 @@ std::optional<Light> readLight(const Json& json, const Affine& toWorld) {
   light.maxBounces = static_cast<int>(json.integerOr("maxBounces", light.maxBounces, 0, 1 << 20));
   light.toWorld = toWorld;
   light.shadow = json.booleanOr("shadow", true);
-  const Rgb color = json.colorOr("color", {1, 1, 1});
+  const Rgb color = json.lightOr("color", {1, 1, 1});
   switch (light.type) {
     case LightType::kArea: {
-      light.emitted = color * json.at("radiance").number(0);
+      light.emitted = color * json.at("radiance").number();
       if (const auto shape = json.find("shape")) light.ellipse = shape->choice(kIsEllipse);
       if (const auto size = json.find("size")) {
         const auto xy = size->numbers<2>();
@@ -51,12 +51,12 @@ std::optional<Light> readLight(const Json& json, const Affine& toWorld) {
       light.cosine = json.booleanOr("cosine", false);
       [[fallthrough]];
     case LightType::kPoint:
-      light.emitted = color * json.at("intensity").number(0);
+      light.emitted = color * json.at("intensity").number();
       light.radius = json.numberOr("radius", 0, 0);
       light.facing = json.booleanOr("facing", true);
       break;
     case LightType::kSun:
-      light.emitted = color * json.at("irradiance").number(0);
+      light.emitted = color * json.at("irradiance").number();
       light.angle = json.numberOr("angle", 0, 0, 3.1416f);
       light.flat = json.booleanOr("flat", false);
       break;

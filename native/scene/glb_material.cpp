@@ -98,18 +98,18 @@ Material Materials::ward(const Json& extension) {
   if (const auto variant = extension.find("variant")) m.variant = variant->choice(kVariants);
   readColor(extension, "diffuse", m.diffuse);
   readColor(extension, "specular", m.specular);
-  readColor(extension, "emission", m.emission);
+  readColor(extension, "emission", m.emission, true);
   readAlpha(extension, "alphaX", m.alphaX);
   readAlpha(extension, "alphaY", m.alphaY);
   m.rotation = extension.numberOr("rotation", 0);
   return m;
 }
 
-void Materials::readColor(const Json& extension, std::string_view key, ColorInput& out) {
+void Materials::readColor(const Json& extension, std::string_view key, ColorInput& out, bool light) {
   const auto json = extension.find(key);
   if (!json) return;
-  out.value = json->colorOr("value", {1, 1, 1});
-  if (maxComponent(out.value) == 0) return;  // nothing to multiply
+  out.value = light ? json->lightOr("value", {1, 1, 1}) : json->colorOr("value", {1, 1, 1});
+  if (isBlack(out.value)) return;  // nothing to multiply
   if (const auto texture = json->find("texture")) out.texture = wardTexture(*texture, true);
 }
 

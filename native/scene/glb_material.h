@@ -46,7 +46,7 @@ class Materials {
 
   Material ward(const Json& extension);
   Material core(const Json& json);
-  void readColor(const Json& extension, std::string_view key, ColorInput& out);
+  void readColor(const Json& extension, std::string_view key, ColorInput& out, bool light = false);
   void readAlpha(const Json& extension, std::string_view key, ScalarInput& out);
   TextureUse wardTexture(const Json& json, bool isColor);
   std::optional<TextureUse> coreTexture(const Json& parent, std::string_view key, bool isColor);

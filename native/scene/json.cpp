@@ -256,6 +256,10 @@ Rgb Json::colorOr(std::string_view key, Rgb fallback) const {
   const auto json = find(key);
   return json ? json->color() : fallback;
 }
+Rgb Json::lightOr(std::string_view key, Rgb fallback) const {
+  const auto json = find(key);
+  return json ? Rgb{json->vec3()} : fallback;
+}
 
 std::string Json::name() const {
   std::string_view text;

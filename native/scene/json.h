@@ -75,6 +75,7 @@ class Json {
   float numberOr(std::string_view key, float fallback, float low = -FLT_MAX, float high = FLT_MAX) const;
   uint64_t integerOr(std::string_view key, uint64_t fallback, uint64_t low, uint64_t high) const;
   Rgb colorOr(std::string_view key, Rgb fallback) const;
+  Rgb lightOr(std::string_view key, Rgb fallback) const;  // of which there may be less than none
 
   // One of a closed set of strings.
   template <class E, size_t N>

@@ -25,7 +25,7 @@ uint32_t needs(const Light&) { return kNeedsLightSampling; }
 
 uint32_t needs(const Camera& c) { return c.lensRadius > 0 ? kNeedsLens : 0u; }
 
-uint32_t needs(const World& w) { return maxComponent(w.radiance) > 0 ? kNeedsEnvironment : 0u; }
+uint32_t needs(const World& w) { return !isBlack(w.radiance) ? kNeedsEnvironment : 0u; }
 
 uint32_t needs(const Scene& scene, const Geometry& geometry, const Emitters& emitters, bool joint) {
   uint32_t n = needs(scene.world);
@@ -70,7 +70,7 @@ void requireMemoryFor(const Scene& scene) {
   for (size_t m = 0; m < scene.meshes.size(); ++m)
     for (const MeshPart& part : scene.meshes[m].parts)
       for (const Primitive& p : part.primitives)
-        if (maxComponent(scene.materials[static_cast<size_t>(p.material)].emission.value) > 0)
+        if (!isBlack(scene.materials[static_cast<size_t>(p.material)].emission.value))
           emissive[m] += p.indices.size() / 3;
   uint64_t emitters = 0;  // at most 5 * 10^7 * 2^31
   for (const Instance& i : scene.instances) emitters += emissive[static_cast<size_t>(i.mesh)];

@@ -190,9 +190,10 @@ class Lights(SceneTest):
         scene = self.gather()
         self.assertEqual((scene.lights, scene.notes), ([], []))
 
-    def test_negative_light_is_noted(self):
+    def test_negative_light_takes_light_away(self):
         self.light("POINT").data.energy = -5
-        self.assertIn("negative light is not supported", self.gather().notes[0])
+        light = self.only()
+        self.assertAlmostEqual(light.emission, -5 / (4 * math.pi), 6)
 
     def test_shadow_and_visibility(self):
         obj = self.light("POINT")
@@ -329,11 +330,19 @@ class World(SceneTest):
             "world 'World': node 'Background' (Background) has a 'Strength' that is not a finite number", scene.notes[0]
         )
 
-    def test_negative_background_is_noted(self):
+    def test_limit_of_an_image_is_noted(self):
+        self.world.cycles.max_bounces = 2
+        self.assertEqual(self.gather().notes, [])
+        node = self.world.node_tree.nodes.new("ShaderNodeTexEnvironment")
+        node.image = bpy.data.images.new("Sky", 4, 2)
+        self.world.node_tree.links.new(node.outputs[0], self.background.inputs["Color"])
+        self.assertIn("world 'World': its Max Bounces are not supported", self.gather().notes[0])
+
+    def test_negative_background_takes_light_away(self):
         self.background.inputs["Strength"].default_value = -1
         scene = self.gather()
-        self.assertEqual(scene.world.radiance, (0, 0, 0))
-        self.assertIn("world 'World': negative light is not supported", scene.notes[0])
+        np.testing.assert_allclose(scene.world.radiance, (-0.1, -0.2, -0.4))
+        self.assertEqual(scene.notes, [])
 
     def test_color_without_nodes(self):
         if compat.VERSION >= (5, 0, 0):

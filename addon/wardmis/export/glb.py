@@ -233,7 +233,7 @@ class _Encoder:
         core: dict[str, Any] = {"pbrMetallicRoughness": pbr, "doubleSided": True}
         peak = max(material.emission.value)
         if peak > 0:
-            core["emissiveFactor"] = [v / max(peak, 1.0) for v in material.emission.value]
+            core["emissiveFactor"] = [max(v, 0.0) / max(peak, 1.0) for v in material.emission.value]
         return core
 
     def _core_extensions(self, material: MaterialData, extension: dict[str, Any]) -> dict[str, Any]:

@@ -33,9 +33,6 @@ def export_light(
     color = tuple(c * t * n for c, t, n in zip(light.color, temperature, node_factor))
     if not (np.abs((power, *color, power * max(color))) <= LARGEST).all():
         raise ExportError(f"light '{light.name}': its power or colour is not a finite number; correct it")
-    if power < 0 or min(color) < 0:
-        context.note(f"light '{light.name}': negative light is not supported; the light is left out")
-        return None
     if power == 0 or not any(color):
         return None
     data = LightData(name, light.type.lower(), matrix, color, 0.0, hidden_from=hidden_from)

@@ -43,7 +43,7 @@ def _translate(material: Any, owner: Owner, surface: Surface) -> MaterialData:
         calc.scalar_input(surface.alpha_x),
         calc.scalar_input(surface.alpha_y),
         surface.rotation,
-        calc.color_input(surface.emission),
+        calc.light_input(surface.emission),
     )
 
 

@@ -7,6 +7,7 @@ baked once instead of being left out. Everything is RGB: a number is a grey colo
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
@@ -132,9 +133,14 @@ class Calculator:
     def clamp(self, a: Value) -> Value:
         return self.apply("clamp", lambda x: np.clip(x, 0.0, 1.0), a)
 
-    def color_input(self, a: Value) -> ColorInput:
-        r, g, b = (float(x) for x in np.maximum(a.factor, 0.0))  # a NaN stays one
+    def color_input(self, a: Value, least: float = 0.0) -> ColorInput:
+        """`least`: what is below is cut. A surface that reflects less than nothing reflects nothing."""
+        r, g, b = (float(x) for x in np.maximum(a.factor, least))  # a NaN stays one
         return ColorInput((r, g, b), self.texture(a, 3) if a.lookup and not a.is_black else None)
+
+    def light_input(self, a: Value) -> ColorInput:
+        """Of light there may be less than none: it takes other light away, as in Cycles."""
+        return self.color_input(a, -math.inf)
 
     def scalar_input(self, a: Value) -> ScalarInput:
         a = self.grey(a)

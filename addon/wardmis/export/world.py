@@ -30,6 +30,8 @@ def export_world(world: Any, context: ExportContext) -> WorldData:
     if wrong is not None:
         context.note(f"{owner.place}: its {wrong} is not a finite number; it gives no light")
         return WorldData()
+    if data.texture is not None and compat.max_bounces(world) < 1024:  # a constant sky has no limit in Cycles either
+        context.note(f"{owner.place}: its Max Bounces are not supported; it lights all surfaces of a path")
     return data
 
 
@@ -45,10 +47,8 @@ def _translate(world: Any, owner: Owner) -> WorldData:
 
 
 def _radiance(emission: Value, owner: Owner) -> WorldData:
-    if (emission.factor < 0).any():
-        owner.context.note(f"{owner.place}: negative light is not supported; none is used instead")
     calc = Calculator(owner)
-    color = calc.color_input(emission)
+    color = calc.light_input(emission)
     if color.texture is None or emission.lookup is None:
         return WorldData(color.value)
     return WorldData(color.value, color.texture.index, np.array(emission.lookup.transform).reshape(3, 3))

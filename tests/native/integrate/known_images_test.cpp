@@ -211,6 +211,40 @@ TEST(Irradiance, Rectangle) {
   }
 }
 
+// What gives less light than none takes it away, by every technique that finds it, and no sample is dropped for it.
+TEST(Irradiance, NegativeLight) {
+  Light rectangle;
+  rectangle.type = LightType::kArea;
+  rectangle.emitted = {-2, -2, -2};
+  rectangle.sizeX = 2, rectangle.sizeY = 1;
+  rectangle.toWorld.t = {0, 0, 1};
+  const double taken = 2 * 4 * cornerFactor(1, 0.5, 1);
+  for (Allocation allocation : {Allocation::kEqual, Allocation::kSecondMoment, Allocation::kAuto})
+    for (bool mesh : {false, true}) {
+      Scene scene = plane();
+      scene.world.radiance = {1, 1, 1};
+      if (mesh) {
+        scene.materials.push_back(ward({0, 0, 0}, {0, 0, 0}, 0.1f, WardVariant::kWardGmd));
+        scene.materials.back().emission.value = {-2, -2, -2};
+        addMesh(scene, {{-1, -0.5f, 1}, {1, -0.5f, 1}, {1, 0.5f, 1}, {-1, 0.5f, 1}}, {0, 1, 2, 0, 2, 3}, 1);
+        scene.instances.back().visibility = kSeenByAll & ~kSeenByCamera;
+      } else {
+        scene.lights = {rectangle};
+        scene.lights[0].visibility = kSeenByAll & ~kSeenByCamera;
+      }
+      RenderSettings s = settings(1024);
+      s.allocation = allocation;
+      Statistics statistics;
+      const double mean = measure(renderScene(scene, s, &statistics)).mean;
+      // the mesh hides a part of the sky, too
+      EXPECT_NEAR(mean, 1 - taken * (mesh ? 1.5 : 1.0), 3e-3 * (1 + taken)) << mesh << ' ' << name(allocation);
+      EXPECT_EQ(statistics.counts.rare.total(), 0u);
+    }
+  Scene scene = plane();
+  scene.world.radiance = {-1, -1, -1};
+  EXPECT_NEAR(radiance(scene), -1, 1e-3);
+}
+
 TEST(Irradiance, Ellipse) {
   Scene scene = plane();
   Light l;

@@ -217,6 +217,19 @@ TEST(Glb, DropsDegenerateTriangles) {
   EXPECT_TRUE(listHas(s.leftOut, "'Square': its mesh has no triangles"));
 }
 
+// Less light than none, and a light that does not follow every path.
+TEST(Glb, ReadsLightsThatTakeAwayAndEnd) {
+  GlbBuilder b = square();
+  b.extension() = {{"version", 1}, {"world", {{"radiance", {-1, 0, 0.5}}}}};
+  b.extension()["lights"] = {{{"type", "sun"}, {"irradiance", -2}, {"color", {1, 0, 0.5}}, {"maxBounces", 3}}};
+  b.root["nodes"][0]["extensions"]["WARDMIS_scene"]["light"] = 0;
+  const Scene scene = read(b);
+  expectNear(scene.world.radiance, {-1, 0, 0.5f});
+  ASSERT_EQ(scene.lights.size(), 1u);
+  expectNear(scene.lights[0].emitted, {-2, 0, -1});
+  EXPECT_EQ(scene.lights[0].maxBounces, 3);
+}
+
 TEST(Glb, MultipliesTheHierarchy) {
   GlbBuilder b = square();
   b.root["nodes"] = {
@@ -653,9 +666,9 @@ TEST(Glb, RefusesHostileScenes) {
       // lights, camera, film
       {"lights[0].type: expected one of", light({{"type", "laser"}})},
       {"lights[0]: 'radiance' is missing", light({{"type", "area"}})},
-      {"lights[0] 'L' .intensity: expected a number >= 0, found -1", light({{"name", "L"}, {"type", "point"}, {"intensity", -1}})},
+      {"lights[0] 'L' .radius: expected a number >= 0, found -1", light({{"name", "L"}, {"type", "point"}, {"intensity", 1}, {"radius", -1}})},
+      {"lights[0].maxBounces: expected a whole number from 0", light({{"type", "point"}, {"intensity", 1}, {"maxBounces", -1}})},
       {"lights[0]: its area is not positive", light({{"type", "area"}, {"radiance", 1}, {"size", {0, 1}}})},
-      {"lights[0].color: expected three numbers >= 0", light({{"type", "sun"}, {"irradiance", 1}, {"color", {1, 1, -1}}})},
       {"lights[0]: its power is not a number", light({{"type", "sun"}, {"irradiance", 1e38}, {"color", {1e38, 1, 1}}})},
       {"light: refers to lights[4]", [](GlbBuilder& b) { b.root["nodes"][0]["extensions"]["WARDMIS_scene"]["light"] = 4; }},
       {"camera: nodes[0] has no camera", extension({{"camera", 0}})},
@@ -670,7 +683,6 @@ TEST(Glb, RefusesHostileScenes) {
       {"film.resolution: expected at most 2^28 pixels", extension({{"film", {{"resolution", {65536, 65536}}}}})},
       {"film.border: expected [x0, y0, x1, y1] within 4 x 4", extension({{"film", {{"resolution", {4, 4}}, {"border", {0, 0, 5, 4}}}}})},
       {"film.filter.type: expected one of", extension({{"film", {{"resolution", {4, 4}}, {"filter", {{"type", "sinc"}}}}}})},
-      {"world.radiance: expected three numbers >= 0", extension({{"world", {{"radiance", {-1, 0, 0}}}}})},
       {"world.texture.index: refers to textures[0]", extension({{"world", {{"texture", {{"index", 0}}}}}})},
       {"world.texture.matrix: it has no inverse",
        [extension](GlbBuilder& b) {

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Light that takes light away: negative strengths of lamps, materials and worlds, over a sky that leaves something to take."""
+
+from stage import BLUE, GREEN, RED, add, ball, box, camera, emitter, floor, lamp, material, mesh, scene, sky, square
+
+
+def things():
+    floor()
+    ball(location=(-0.9, 0.2, 1))
+    box(location=(1.3, 0.4, 0.6), scale=(0.6, 0.6, 0.6))
+    sky((1, 1, 1))
+    camera()
+
+
+def above(of):
+    made = mesh("Above", *square(1), of)
+    made.location = 0.3, -0.5, 3
+    made.visible_camera = False
+
+
+@scene
+def lamps():
+    things()
+    lamp("POINT", (-2, -2, 4), -60, RED)
+    lamp("AREA", (1, -1, 4), -60, GREEN, size=2)
+    lamp("SUN", (1, 2, 4), -0.3, BLUE, angle=0.2)
+
+
+@scene
+def emission():
+    things()
+    above(emitter((1, 0.5, 0.1), -3))
+
+
+@scene(bounces=3)
+def emission_and_light():
+    """One material that emits and reflects, beside what it takes from."""
+    things()
+    made, tree, output = material()
+    total = add(tree, "AddShader")
+    for node, socket in ((add(tree, "Emission", Strength=-0.7), 0), (add(tree, "BsdfDiffuse"), 1)):
+        tree.links.new(node.outputs[0], total.inputs[socket])
+    tree.links.new(total.outputs[0], output.inputs["Surface"])
+    ball(made, location=(0.6, -1.6, 0.5), radius=0.5)
+    lamp("POINT", (2, -2, 4), 200)
+
+
+@scene
+def world():
+    things()
+    sky((0.5, 0.3, 0.1), -1)
+    lamp("AREA", (1, -1, 4), 300, size=2)
