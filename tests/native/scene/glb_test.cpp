@@ -770,8 +770,18 @@ TEST(Glb, ReadsTheCorpus) {
     GlbBuilder png = textured({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
     png.add("images", {{"bufferView", png.view(png2x1({1, 2, 3, 4, 5, 6}))}});
     png.add("textures", {{"source", 0}});
+    GlbBuilder foreign = textured(
+        {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}, {"texCoord", 1}}}}},
+         {"extensions", {{"KHR_materials_unlit", json::object()}, {"KHR_materials_transmission", json::object()}}}});
+    foreign.add("images", {{"uri", "lost.png"}});
+    foreign.add("textures", {{"extensions", {{"EXT_texture_webp", {{"source", 0}}}}}});
+    primitive(foreign)["attributes"]["TEXCOORD_1"] = primitive(foreign)["attributes"]["TEXCOORD_0"];
+    primitive(foreign)["attributes"]["COLOR_0"] = foreign.accessor<float>(std::vector<float>(12, 1), 3);
+    foreign.root["nodes"][0]["children"] = {1};
+    foreign.add("nodes", {{"mesh", 0}});
+    foreign.root["scenes"] = {{{"nodes", {1}}}};
     const std::pair<const char*, GlbBuilder> seeds[] = {
-        {"square", square()}, {"everything", everything()}, {"sparse", sparse}, {"png", png}};
+        {"square", square()}, {"everything", everything()}, {"sparse", sparse}, {"png", png}, {"foreign", foreign}};
     for (const auto& [name, b] : seeds) {
       const Bytes bytes = seed(b);
       std::ofstream(fs::path(to) / name, std::ios::binary)
@@ -791,7 +801,7 @@ TEST(Glb, ReadsTheCorpus) {
     }
     files++;
   }
-  EXPECT_GE(files, 4);
+  EXPECT_GE(files, 5);
 }
 
 }  // namespace
