@@ -87,7 +87,9 @@ def chosen(entry: Scene, pattern: str) -> bool:
 
 def main() -> None:
     folder, first_seed, part, parts, *pattern = sys.argv[sys.argv.index("--") + 1 :]
-    wanted = [s for s in SCENES.values() if chosen(s, *pattern or [""]) and bpy.app.version[:2] >= s.since]
+    wanted = [s for s in SCENES.values() if chosen(s, *pattern or [""])]
+    version = bpy.app.version[:2]
+    wanted = [s for s in wanted if version >= s.since and version != s.without]
     wanted = wanted[int(part) :: int(parts)]
     (Path(folder) / f"part-{part}.json").write_text(json.dumps([s.name for s in wanted]))
     for entry in wanted:

@@ -33,6 +33,7 @@ class Scene:
     within: float
     why: str
     since: tuple[int, int]  # the first Blender that can make it
+    without: tuple[int, int] | None  # one that cannot
 
 
 SCENES: dict[str, Scene] = {}
@@ -45,14 +46,15 @@ def scene(
     within: float = TOLERANCE,
     why: str = "",
     since: tuple[int, int] = (3, 4),
+    without: tuple[int, int] | None = None,
 ) -> Any:
     """Enters a function that builds into an empty Blender scene; it is named after it and its file. `bounces` are Cycles'; 0: direct light."""
     if function is None:
-        return lambda f: scene(f, bounces=bounces, within=within, why=why, since=since)
+        return lambda f: scene(f, bounces=bounces, within=within, why=why, since=since, without=without)
     name = f"{function.__module__.rpartition('.')[2]}-{function.__name__}"
     assert name not in SCENES, f"two scenes are called {name}"
     assert within <= TOLERANCE or why, f"{name} may deviate by {within}: why?"
-    SCENES[name] = Scene(name, function, bounces, within, why, since)
+    SCENES[name] = Scene(name, function, bounces, within, why, since, without)
     return function
 
 

@@ -8,18 +8,15 @@ from stage import add, checker, diffuse, face_on, feed, gradient, image, painted
 CORNERS = checker((0.9, 0.1, 0.1), (0.1, 0.8, 0.2), (0.1, 0.2, 0.9), (0.8, 0.8, 0.1))
 
 
-def shows(picture, settings=None, output="Color", mapping=None, uv_map=None):
+def shows(picture, settings=None, output="Color", mapping=None):
     """A sheet with this image, seen from above."""
     face_on()
-    sheet(painted(lambda tree: texture(tree, picture, settings, mapping, uv_map).outputs[output]))
+    sheet(painted(lambda tree: texture(tree, picture, settings, mapping).outputs[output]))
 
 
-def texture(tree, picture, settings=None, mapping=None, uv_map=None):
+def texture(tree, picture, settings=None, mapping=None):
     node = add(tree, "TexImage", {"image": picture, **(settings or {})})
-    if uv_map is not None:
-        vector = add(tree, "UVMap", {"uv_map": uv_map}).outputs[0]
-    else:
-        vector = add(tree, "TexCoord").outputs["UV"]
+    vector = add(tree, "TexCoord").outputs["UV"]
     if mapping is not None:
         kind, inputs = mapping
         mapped = add(tree, "Mapping", {"vector_type": kind}, Vector=vector)
@@ -145,7 +142,7 @@ def alpha_alone():
     alpha("STRAIGHT", output="Alpha")
 
 
-@scene
+@scene(within=0.06, why="nodes calculate with pixels, before these are filtered")
 def alpha_with_color():
     """Where alpha is used, the colour is not multiplied by it."""
     face_on()
@@ -240,13 +237,6 @@ def own_colors():
         return node.outputs["Color"]
 
     sheet(painted(build))
-
-
-@scene
-def second_map():
-    face_on()
-    picture = image("Colours", gradient(4, 4))
-    sheet(painted(lambda tree: texture(tree, picture, uv_map="Turned").outputs["Color"]), maps=("UVMap", "Turned"))
 
 
 @scene
