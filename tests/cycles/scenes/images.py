@@ -21,7 +21,7 @@ def texture(tree, picture, settings=None, mapping=None):
         kind, inputs = mapping
         mapped = add(tree, "Mapping", {"vector_type": kind}, Vector=vector)
         for name, value in inputs.items():
-            if mapped.inputs[name].enabled:
+            if name in mapped.inputs and mapped.inputs[name].enabled:
                 feed(tree, mapped.inputs[name], value)
         vector = mapped.outputs[0]
     tree.links.new(vector, node.inputs["Vector"])
