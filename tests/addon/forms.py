@@ -16,7 +16,7 @@ if bpy.app.version >= (4, 0, 0):  # in 3.4 they cannot be filled from Python
 
 
 def form(build):
-    SCENES.append(Scene(f"forms-{build.__name__}", build, 0, 0.0, "", (3, 4)))
+    SCENES.append(Scene(f"forms-{build.__name__}", build, 0, 0.0, "", (3, 4), None))
     return build
 
 

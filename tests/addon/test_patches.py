@@ -45,10 +45,7 @@ class Patches(SceneTest):
                 data = export_material(material, context)
                 self.assertIsNone(data.emission.texture)
                 tolerance = next((t for word, t in LOOSE.items() if name.startswith(word)), 1e-3)
-                # light is never negative
-                np.testing.assert_allclose(
-                    data.emission.value, np.maximum(colors[name], 0.0), rtol=tolerance, atol=tolerance
-                )
+                np.testing.assert_allclose(data.emission.value, colors[name], rtol=tolerance, atol=tolerance)
                 self.assertFalse(any(data.diffuse.value), "magenta")
         return context
 

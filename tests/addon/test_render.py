@@ -310,7 +310,7 @@ class Failures(RenderTest):
         full = "import shutil, types\nshutil.disk_usage = lambda path: types.SimpleNamespace(free={})\n"
         self.check(f"the disk of {self.folder} has 1 KiB free, and the image wants 15", full.format(1024))
         # room enough for an image of this size, but not for the file that has been rendered
-        self.check(f"the disk of {self.folder} has 15 KiB free", MULTILAYER + full.format(15_000))
+        self.check(f"the disk of {self.folder} has 3 KiB free", MULTILAYER + full.format(3_000))
 
     def test_renderer_not_found(self):
         self.check("which the environment variable WARDMIS_BINARY names", WARDMIS_BINARY=str(self.folder / "none"))

@@ -72,8 +72,8 @@ def unbiased(scene: Any, bounces: Bounces) -> Iterator[Setting]:
     yield scene.render, "use_motion_blur", False
     yield cycles, "max_bounces", bounces.total
     yield cycles, "transmission_bounces", bounces.total
-    yield cycles, "diffuse_bounces", bounces.diffuse
-    yield cycles, "glossy_bounces", bounces.glossy
+    yield cycles, "diffuse_bounces", min(bounces.diffuse, bounces.total)
+    yield cycles, "glossy_bounces", min(bounces.glossy, bounces.total)
     # Cycles moves the shadows' rays away from smooth surfaces
     for obj in scene.objects:
         owner = compat.shadow_terminator_owner(obj)

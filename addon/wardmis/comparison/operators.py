@@ -121,6 +121,9 @@ class _Asked:
     def __init__(self, context: Any, staging: Path) -> None:
         scene = context.scene
         self.settings, self.render_settings = _as_it_is(scene.wardmis_comparison), _as_it_is(scene.wardmis)
+        # the limits of paths may be those of Cycles, which are the scene's too
+        cycles = _as_it_is(scene.cycles) if hasattr(scene, "cycles") else None
+        self.render_settings.id_data = types.SimpleNamespace(wardmis=self.render_settings, cycles=cycles)
         self.study = study_of(scene)
         check_study(self.study)
         try:
