@@ -3,7 +3,8 @@
 
 blender --background FILE.blend --python blend/render_with.py -- OUT.exr render.engine=WARDMIS wardmis.samples=64 ...
 
-Each setting is a property of the scene and its value, as Blender's Python tooltips name it."""
+Each setting is a property of the scene and its value, as Blender's Python tooltips name it; a member of a collection goes by
+its name: view_layers.ViewLayer.wardmis.use_pass_variance=True"""
 
 import sys
 
@@ -15,7 +16,8 @@ def assign(scene: bpy.types.Scene, setting: str) -> None:
     *owners, name = path.split(".")
     target = scene
     for owner in owners:
-        target = getattr(target, owner)
+        members = isinstance(target, bpy.types.bpy_prop_collection)
+        target = target[owner] if members else getattr(target, owner)
     old = getattr(target, name)
     value = text == "True" if isinstance(old, bool) else type(old)(text)
     setattr(target, name, value)
@@ -26,7 +28,7 @@ def render(out: str, settings: list[str]) -> None:
     for setting in settings:
         try:
             assign(scene, setting)
-        except (AttributeError, TypeError, ValueError) as error:
+        except (AttributeError, KeyError, TypeError, ValueError) as error:
             sys.exit(f"render_with.py: '{setting}': {error}")
     image = scene.render.image_settings
     if hasattr(image, "media_type"):  # Blender 5

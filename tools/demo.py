@@ -74,6 +74,7 @@ def say(text: str) -> None:
 def reference(blend: Path, effort: Effort) -> tuple[Rendered, bool]:
     """Made once for a scene, a renderer and an add-on, and kept in build/demo: (image, made in this run)."""
     settings = wardmis(effort, "equal", effort.reference_samples, REFERENCE_SEED)
+    settings["view_layers.ViewLayer.wardmis.use_pass_variance"] = True  # its own noise is told
     digest = hashlib.sha256(repr(settings).encode())
     exporter = sorted((ROOT / "addon" / "wardmis").rglob("*.py"))
     for path in [blend, Path(os.environ["WARDMIS_BINARY"]), *exporter]:

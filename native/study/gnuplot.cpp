@@ -22,12 +22,13 @@ void checkPlotName(const std::string& path) {
 }
 
 std::string gnuplotText(const std::string& text) {
-  std::string quoted = "\"";
+  // within single quotes gnuplot reads all as it is; within double ones it would run what stands in backquotes
+  std::string quoted = "'";
   for (char c : text) {
-    if (c == '"' || c == '\\') quoted += '\\';
+    if (c == '\'') quoted += c;
     quoted += c;
   }
-  return quoted + '"';
+  return quoted + "'";
 }
 
 void drawWithGnuplot(const std::string& path, int width, int height, const std::string& script) {

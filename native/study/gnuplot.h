@@ -13,7 +13,7 @@ void drawWithGnuplot(const std::string& path, int width, int height, const std::
 // Ends with usage where `path` has another ending than .svg and .png: to be called before the work is done.
 void checkPlotName(const std::string& path);
 
-// A label in gnuplot's syntax, in double quotes, nothing in it interpreted.
+// A label in gnuplot's syntax, nothing in it interpreted.
 std::string gnuplotText(const std::string& text);
 
 }  // namespace wardmis

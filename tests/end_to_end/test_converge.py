@@ -279,13 +279,12 @@ class Converge(CommandTest):
         self.assertFalse((self.folder / "poor").exists())
 
     def test_a_budget_cuts_the_seeds_before_it_refuses(self):
-        options = ("--budget-seconds", 8, "--seeds", 100_000, "-c", "equal")
+        options = ("--budget-seconds", 8, "--seeds", 10_000, "-c", "equal")
         done, report = self.study(*options)
-        self.assertLess(len(report["seeds"]), 100_000)
+        self.assertLess(len(report["seeds"]), 10_000)
         self.assertGreaterEqual(len(report["seeds"]), 4)
         self.assertEqual(report["checkpoints"][-1], 4)
-        said = [e["message"] for e in self.events(done.stdout) if e["event"] == "warning"]
-        self.assertTrue(any("suffices for" in message for message in said), said)
+        self.assertIn("suffices for", done.stderr)
         _, again = self.study(*options)  # goes on with as many
         self.assertEqual(again["seeds"], report["seeds"])
 

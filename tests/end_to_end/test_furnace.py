@@ -18,7 +18,12 @@ class Furnace(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         with tempfile.TemporaryDirectory() as folder:
-            settings = {"wardmis.samples": 128, "wardmis.sampler": "independent", "wardmis.seed": 1}
+            settings = {
+                "wardmis.samples": 128,
+                "wardmis.sampler": "independent",
+                "wardmis.seed": 1,
+                "view_layers.ViewLayer.wardmis.use_pass_variance": True,
+            }
             done = blender.render(ROOT / "blend" / "furnace.blend", Path(folder) / "furnace.exr", settings)
         cls.image = done.exr.passes["Combined"][..., :3]
         cls.variance = done.exr.passes["Variance"]
