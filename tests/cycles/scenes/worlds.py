@@ -7,6 +7,8 @@ import bpy
 import numpy as np
 from stage import add, ball, box, camera, floor, image, saved_image, scene, sky, sun
 
+UNSEEN = "a world's ray visibility is not supported, and said so"
+
 
 def things():
     floor()
@@ -108,7 +110,7 @@ def added_shaders():
     tree.links.new(both.outputs[0], output.inputs["Surface"])
 
 
-@scene
+@scene(within=5.0, why="what the camera alone sees of a world is not supported, and said so")
 def mixed_by_light_path():
     """What the camera sees is another sky than what lights the scene."""
     things()
@@ -174,7 +176,7 @@ def image_unlinked():
     tree.links.new(texture.outputs["Color"], tree.nodes["Background"].inputs["Color"])
 
 
-@scene
+@scene(within=5.0, why="mirror balls are not supported, and said so")
 def mirror_ball():
     things()
     tree = sky((1, 1, 1))
@@ -192,7 +194,7 @@ def image_of_8_bits():
     tree.links.new(texture.outputs["Color"], tree.nodes["Background"].inputs["Color"])
 
 
-@scene
+@scene(within=10.0, why=UNSEEN)
 def not_by_diffuse_surfaces():
     """Seen by the camera alone."""
     things()
@@ -202,7 +204,7 @@ def not_by_diffuse_surfaces():
     bpy.context.scene.world.cycles_visibility.diffuse = False
 
 
-@scene
+@scene(within=10.0, why=UNSEEN)
 def not_by_the_camera():
     things()
     sky((0.2, 0.5, 0.9))
