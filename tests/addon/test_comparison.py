@@ -273,8 +273,8 @@ class CyclesSettings(ComparisonTest):
         settings, cycles = self.scene.wardmis, self.scene.cycles
         cycles.max_bounces, cycles.diffuse_bounces, cycles.glossy_bounces = 9, 2, 3
         for changes, expected, options in (
-            ({"max_depth": 8}, (7, 1024, 1024), ["--max-depth", "8"]),
-            ({"max_diffuse": 1}, (7, 1, 1024), ["--max-depth", "8", "--max-diffuse", "1"]),
+            ({"max_depth": 8}, (7, 7, 7), ["--max-depth", "8"]),
+            ({"max_diffuse": 1}, (7, 1, 7), ["--max-depth", "8", "--max-diffuse", "1"]),
             ({"bounces": "cycles"}, (9, 2, 3), ["--max-depth", "10", "--max-diffuse", "2", "--max-glossy", "3"]),
             ({"integrator": "direct"}, (0, 0, 0), []),
         ):
