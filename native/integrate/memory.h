@@ -9,9 +9,6 @@ namespace wardmis {
 // Of the largest moment of a render: the film with the pilot, or with the passes that are written.
 uint64_t bytesPerPixel(const RenderSettings& settings);
 
-// Bytes that this process may still take: of the machine's, of its control group's and of its own limit the least.
-uint64_t freeMemory();
-
 // Throws Error (memory), with the numbers, where a frame does not fit.
 void requireMemory(int width, int height, const RenderSettings& settings);
 

@@ -26,13 +26,30 @@ uint64_t numberIn(const char* path, const std::string& key, uint64_t fallback) {
 
 uint64_t without(uint64_t limit, uint64_t used) { return limit > used ? limit - used : 0; }
 
+// Of the process's control group (version 2) and of all that it lies in.
+uint64_t freeInGroup() {
+  std::ifstream in("/proc/self/cgroup");
+  uint64_t least = kUnknown;
+  const auto lowerTo = [&](const std::string& folder) {
+    const uint64_t limit = numberIn((folder + "/memory.max").c_str(), "", kUnknown);  // "max": none
+    if (limit < kUnknown)
+      least = std::min(least, without(limit, numberIn((folder + "/memory.stat").c_str(), "anon", 0)));
+  };
+  lowerTo("/sys/fs/cgroup");  // of a container, which sees its own as the root
+  for (std::string line; std::getline(in, line);) {
+    if (!line.starts_with("0::/")) continue;
+    for (std::string group = line.substr(3); group.size() > 1; group.resize(group.rfind('/')))
+      lowerTo("/sys/fs/cgroup" + group);
+  }
+  return least;
+}
+
 }  // namespace
 
 uint64_t availableMemory() {
   constexpr uint64_t kKiB = 1024, kNone = kUnknown / kKiB;
   uint64_t bytes = kKiB * std::min(kNone, numberIn("/proc/meminfo", "MemAvailable:", kNone));
-  if (const uint64_t limit = numberIn("/sys/fs/cgroup/memory.max", "", kUnknown); limit < kUnknown)
-    bytes = std::min(bytes, without(limit, numberIn("/sys/fs/cgroup/memory.stat", "anon", 0)));
+  bytes = std::min(bytes, freeInGroup());
   if (rlimit limit{}; getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
     bytes = std::min<uint64_t>(bytes, without(limit.rlim_cur, kKiB * numberIn("/proc/self/status", "VmSize:", 0)));
   return bytes;
