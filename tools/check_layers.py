@@ -12,13 +12,14 @@ FLOORS = [
     {"cli"},
     {"report", "study"},
     {"integrate"},
+    {"world", "gltf"},
     {"scene"},
     {"bsdf", "mis", "film", "oiio", "codecs"},
     {"image"},
     {"math"},
 ]
 # Libraries that one place alone may know.
-LIBRARIES = {"embree": ["native/scene/accel"], "CLI": ["native/cli/"], "OpenImageIO": ["native/oiio/"]}
+LIBRARIES = {"embree": ["native/world/accel"], "CLI": ["native/cli/"], "OpenImageIO": ["native/oiio/"]}
 LIBRARIES |= {library: ["native/codecs/"] for library in ("draco", "meshoptimizer", "webp")}
 
 # Python: Blender's modules, and where they may be imported.

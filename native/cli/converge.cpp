@@ -12,11 +12,11 @@
 #include "cli/session.h"
 #include "cli/settings.h"
 #include "cli/verbs.h"
+#include "gltf/reader.h"
 #include "integrate/setup.h"
 #include "math/error.h"
 #include "report/page.h"
 #include "scene/defaults.h"
-#include "scene/glb.h"
 
 namespace wardmis {
 namespace {

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/verbs.h"
+#include "gltf/reader.h"
 #include "scene/defaults.h"
-#include "scene/glb.h"
-#include "scene/needs.h"
+#include "world/needs.h"
 
 namespace wardmis {
 

@@ -10,7 +10,7 @@
 #include "cli/session.h"
 #include "cli/verbs.h"
 #include "math/error.h"
-#include "scene/accel.h"
+#include "world/accel.h"
 
 namespace {
 

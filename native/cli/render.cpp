@@ -16,11 +16,11 @@
 #include "cli/settings.h"
 #include "cli/verbs.h"
 #include "film/write_file.h"
+#include "gltf/reader.h"
 #include "integrate/passes.h"
 #include "math/clones.h"
 #include "math/error.h"
 #include "scene/defaults.h"
-#include "scene/glb.h"
 
 namespace wardmis {
 namespace {

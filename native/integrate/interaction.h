@@ -3,9 +3,9 @@
 #pragma once
 
 #include "bsdf/surface.h"
-#include "scene/accel.h"
-#include "scene/needs.h"
-#include "scene/texture.h"
+#include "scene/inputs.h"
+#include "world/accel.h"
+#include "world/needs.h"
 
 namespace wardmis {
 

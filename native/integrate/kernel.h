@@ -4,7 +4,7 @@
 
 #include "film/film.h"
 #include "integrate/pilot.h"
-#include "scene/camera_ray.h"
+#include "world/camera_ray.h"
 
 namespace wardmis {
 

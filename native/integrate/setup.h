@@ -8,7 +8,7 @@
 
 #include "integrate/kernel.h"
 #include "integrate/render.h"
-#include "scene/environment.h"
+#include "world/environment.h"
 
 namespace wardmis {
 

@@ -14,10 +14,10 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "gltf/file.h"
+#include "image/file.h"
+#include "image/texture.h"
 #include "math/error.h"
-#include "scene/glb_file.h"
-#include "scene/image_file.h"
-#include "scene/texture.h"
 
 namespace wardmis {
 namespace {

@@ -12,8 +12,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "gltf/file.h"
 #include "math/clones.h"
-#include "scene/glb_file.h"
 
 namespace wardmis {
 namespace {

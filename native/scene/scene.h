@@ -13,6 +13,7 @@
 
 #include "bsdf/ward.h"
 #include "film/filter.h"
+#include "image/image.h"
 #include "math/vec.h"
 
 namespace wardmis {
@@ -30,26 +31,6 @@ struct Array {
   size_t size() const { return data.size(); }
   bool empty() const { return data.empty(); }
   const T& operator[](size_t i) const { return data[i]; }
-};
-
-// Pixels, rows from the bottom (v = 0 is row 0). 1 to 4 channels, interleaved. Linear, but for `srgb`: 8-bit images
-// that are sRGB stay so and are decoded at look-up, as are floats if `filterEncoded`.
-struct Image {
-  std::string name;
-  int width = 0, height = 0, channels = 0;
-  bool srgb = false;
-  std::vector<uint8_t> bytes;  // exactly one of the two is filled
-  std::vector<float> floats;
-  bool filterEncoded = false;  // sRGB values are filtered as they are, and decoded after that
-};
-
-enum class Wrap : uint8_t { kRepeat, kClamp, kMirror, kClip };  // kClip: 0 outside
-enum class Filter : uint8_t { kLinear, kNearest, kCubic };      // kCubic: B-spline
-
-struct Texture {
-  int image = -1;
-  Wrap wrapU = Wrap::kRepeat, wrapV = Wrap::kRepeat;
-  Filter filter = Filter::kLinear;
 };
 
 // One material input: a constant times, optionally, a texture looked up at (a u + b v + c, d u + e v + f).

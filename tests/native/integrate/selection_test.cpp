@@ -8,8 +8,8 @@
 #include <random>
 
 #include "integrate/setup.h"
-#include "scene/environment.h"
 #include "scenes.h"
+#include "world/environment.h"
 
 namespace wardmis {
 namespace {

@@ -10,11 +10,11 @@
 #include <sstream>
 
 #include "film/exr.h"
+#include "gltf/file.h"
+#include "image/file.h"
 #include "math/error.h"
 #include "report/difference.h"
 #include "report/metrics.h"
-#include "scene/glb_file.h"
-#include "scene/image_file.h"
 
 namespace wardmis {
 namespace {

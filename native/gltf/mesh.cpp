@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gltf/mesh.h"
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+#include "gltf/draco.h"
+
+namespace wardmis {
+namespace {
+
+constexpr const char* kExportAgain = "export the scene again";
+constexpr size_t kGrain = 1 << 15;
+constexpr uint64_t kMostTriangles = uint64_t(1) << 31;
+
+enum Mode { kTriangles = 4, kStrip = 5, kFan = 6 };
+
+// 0, 1, 2, ...: what a primitive without indices means.
+Array<uint32_t> consecutive(size_t n) {
+  std::vector<uint32_t> out(n);
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, n, kGrain), [&](const auto& range) {
+    std::iota(out.begin() + range.begin(), out.begin() + range.end(), static_cast<uint32_t>(range.begin()));
+  });
+  return Array<uint32_t>::of(std::move(out));
+}
+
+// The triangles of a strip or a fan; every second one of a strip is turned so that all face the same way.
+Array<uint32_t> unrolled(const Array<uint32_t>& in, Mode mode) {
+  std::vector<uint32_t> out;
+  out.reserve(3 * (in.size() - 2));
+  for (size_t i = 0; i + 2 < in.size(); i++) {
+    const bool odd = mode == kStrip && i % 2 == 1;
+    const size_t first = mode == kFan ? 0 : i;
+    out.insert(out.end(), {in[first], in[i + (odd ? 2 : 1)], in[i + (odd ? 1 : 2)]});
+  }
+  return Array<uint32_t>::of(std::move(out));
+}
+
+}  // namespace
+
+Meshes::Meshes(const Json& root, Accessors& accessors, Buffers& buffers, Materials& materials, LeftOut& leftOut)
+    : meshes_(root.array("meshes")),
+      accessors_(accessors),
+      buffers_(buffers),
+      materials_(materials),
+      leftOut_(leftOut) {}
+
+int Meshes::use(const Json& use) {
+  const size_t i = use.index(meshes_.size(), "meshes");
+  const auto [entry, isNew] = meshOf_.try_emplace(i, -1);
+  if (isNew) {
+    Mesh mesh = read(meshes_[i]);
+    if (!mesh.parts.empty()) {
+      read_.push_back(std::move(mesh));
+      entry->second = static_cast<int>(read_.size() - 1);
+    }
+  }
+  return entry->second;
+}
+
+Mesh Meshes::read(const Json& json) {
+  Mesh mesh;
+  mesh.name = json.name();
+  const JsonArray primitives = json.at("primitives").array();
+  if (primitives.size() == 0) json.at("primitives").failExpected("at least one primitive");
+
+  // Primitives with the same vertex arrays become one part.
+  std::map<std::tuple<size_t, size_t, size_t>, size_t> partOf;
+  for (size_t i = 0; i < primitives.size(); i++) {
+    const Json primitive = primitives[i];
+    const auto mode = primitive.integerOr("mode", kTriangles, 0, 6);
+    if (mode < kTriangles) {
+      leftOut_.add("points and lines of mesh " + json.described(), "only triangles are rendered");
+      continue;
+    }
+    const auto attributes = primitive.find("attributes");
+    const auto position = attributes ? attributes->find("POSITION") : std::nullopt;
+    if (!position) {
+      leftOut_.add("a primitive of mesh " + json.described(), "it has no POSITION");
+      continue;
+    }
+    if (primitive.find("targets"))
+      leftOut_.add("morph targets of mesh " + json.described(), "the base shape is rendered");
+
+    const int material = materials_.use(primitive), set = materials_.uvSet(material);
+    const std::string uvName = set < 0 ? "" : fmt::format("TEXCOORD_{}", set);
+    const auto normal = attributes->find("NORMAL"), uv = set < 0 ? std::nullopt : attributes->find(uvName);
+    if (set >= 0 && !uv)
+      leftOut_.add("textures and direction of anisotropy on mesh " + json.described(),
+                   fmt::format("it has no {}: textures are looked up at (0, 0)", uvName));
+    const auto draco = primitive.extension("KHR_draco_mesh_compression");
+    const size_t vertices = draco ? 0 : accessors_.count(*position);
+    attributes->forEachMember([&](std::string_view key, const Json& use) {
+      if (!draco && key != "POSITION") accessors_.checkAttribute(use, key, vertices);
+      if (key == "COLOR_0")
+        leftOut_.add("vertex colours of mesh " + json.described() + " with " + materials_.described(material),
+                     "the renderer does not use them");
+      else if (key.starts_with("TEXCOORD_") && set < 0)
+        leftOut_.add("vertex attribute " + cleaned(key), "no texture and no anisotropy needs it there");
+      else if (key != "POSITION" && key != "NORMAL" && key != uvName)
+        leftOut_.add("vertex attribute " + cleaned(key), "the renderer does not use it");
+    });
+
+    const auto mended = [&](size_t count) {
+      if (count > 0)
+        leftOut_.add(fmt::format("{} normals or texture coordinates of mesh {}", count, json.described()),
+                     "they are not finite: 0 is used, and the face's own normal where all are so");
+    };
+    if (draco && (hasDraco() || !accessors_.hasData(*position))) {
+      DracoPrimitive decoded = readDraco(*draco, uvName, buffers_);
+      mended(decoded.mended);
+      MeshPart part{decoded.positions, decoded.normals, turned(decoded.uvs, *position), {}};
+      Array<uint32_t> indices = triangles(primitive, part.positions, *position, &decoded.indices);
+      if (indices.empty()) continue;
+      part.primitives.push_back({material, std::move(indices)});
+      mesh.parts.push_back(std::move(part));
+      continue;
+    }
+
+    constexpr size_t kNone = SIZE_MAX, kAny = SIZE_MAX;
+    const auto key =
+        std::make_tuple(position->index(kAny, "accessors"), normal ? normal->index(kAny, "accessors") : kNone,
+                        uv ? uv->index(kAny, "accessors") : kNone);
+    const auto [entry, isNewPart] = partOf.try_emplace(key, mesh.parts.size());
+    if (isNewPart) {
+      MeshPart part;
+      part.positions = accessors_.read<Vec3f>(*position);
+      size_t bad = 0;
+      if (normal) part.normals = accessors_.read<Vec3f>(*normal, &bad);
+      if (uv) part.uvs = turned(accessors_.read<Vec2f>(*uv, &bad), *uv);
+      mended(bad);
+      mesh.parts.push_back(std::move(part));
+    }
+    MeshPart& part = mesh.parts[entry->second];
+    Array<uint32_t> indices = triangles(primitive, part.positions, *position, nullptr);
+    if (!indices.empty()) part.primitives.push_back({material, std::move(indices)});
+  }
+  std::erase_if(mesh.parts, [](const MeshPart& part) { return part.primitives.empty(); });
+  return mesh;
+}
+
+// v = 0 at the bottom, where the file has it at the top.
+Array<Vec2f> Meshes::turned(const Array<Vec2f>& file, const Json& place) {
+  if (file.empty()) return {};
+  buffers_.budget.charge(file.size() * sizeof(Vec2f), place);
+  std::vector<Vec2f> out(file.size());
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, file.size(), kGrain), [&](const auto& range) {
+    for (size_t k = range.begin(); k < range.end(); k++) out[k] = {file[k].x, 1 - file[k].y};
+  });
+  return Array<Vec2f>::of(std::move(out));
+}
+
+Array<uint32_t> Meshes::triangles(const Json& primitive, const Array<Vec3f>& positions, const Json& position,
+                                  const Array<uint32_t>* decoded) {
+  const auto json = primitive.find("indices");
+  const Json place = json && !decoded ? *json : position;
+  const Mode mode = decoded ? kTriangles : static_cast<Mode>(primitive.integerOr("mode", kTriangles, 0, 6));
+  Array<uint32_t> indices;
+  if (decoded)
+    indices = *decoded;
+  else if (json)
+    indices = accessors_.read<uint32_t>(*json);
+  size_t count = decoded || json ? indices.size() : positions.size();
+  const size_t rest = count < 3 ? count : mode == kTriangles ? count % 3 : 0;
+  if (rest > 0) {
+    leftOut_.add(fmt::format("the last {} of {} vertices of {}", rest, count, primitive.path()),
+                 "they make no whole triangle");
+    count -= rest;
+    if (count == 0) return {};
+    if (!indices.empty()) indices.data = indices.data.first(count);
+  }
+  const size_t triangles = mode == kTriangles ? count / 3 : count - 2;
+  triangles_ += triangles;
+  if (triangles_ > kMostTriangles) place.fail("the scene has more than 2^31 triangles", "split the scene");
+  buffers_.budget.charge(triangles * 3 * sizeof(uint32_t), place);
+
+  if (indices.empty()) indices = consecutive(count);
+  if (mode != kTriangles) indices = unrolled(indices, mode);
+  return withoutDegenerate(place, std::move(indices), positions.data);
+}
+
+Array<uint32_t> Meshes::withoutDegenerate(const Json& place, Array<uint32_t> indices,
+                                          std::span<const Vec3f> positions) {
+  using Range = tbb::blocked_range<size_t>;
+  const uint32_t largest = tbb::parallel_reduce(
+      Range(0, indices.size(), kGrain), uint32_t(0),
+      [&](const Range& range, uint32_t most) {
+        for (size_t i = range.begin(); i < range.end(); i++) most = std::max(most, indices[i]);
+        return most;
+      },
+      [](uint32_t a, uint32_t b) { return std::max(a, b); });
+  if (largest >= positions.size())
+    place.fail(fmt::format("refers to vertex {}, but there are {}", largest, positions.size()), kExportAgain);
+
+  // A triangle is kept if its normal can be computed in single precision, as the renderer does.
+  const auto squaredArea = [&](size_t t) {
+    const Vec3f a = positions[indices[3 * t]], b = positions[indices[3 * t + 1]], c = positions[indices[3 * t + 2]];
+    const Vec3f n = cross(b - a, c - a);
+    return dot(n, n);
+  };
+  const auto isGood = [](float area2) { return (area2 > 0) & (area2 <= FLT_MAX); };
+  const std::vector<uint32_t> bad = tbb::parallel_reduce(
+      Range(0, indices.size() / 3, kGrain), std::vector<uint32_t>(),
+      [&](const Range& range, std::vector<uint32_t> list) {
+        for (size_t t = range.begin(); t < range.end(); t++)
+          if (!isGood(squaredArea(t))) list.push_back(static_cast<uint32_t>(t));
+        return list;
+      },
+      [](std::vector<uint32_t> a, const std::vector<uint32_t>& b) {
+        a.insert(a.end(), b.begin(), b.end());
+        return a;
+      });
+  if (bad.empty()) return indices;
+  std::vector<uint32_t> kept;
+  kept.reserve(indices.size() - 3 * bad.size());
+  size_t from = 0;
+  for (const size_t t : bad) {
+    if (!(squaredArea(t) <= FLT_MAX))
+      place.fail(fmt::format("triangle {} is too large for single precision", t),
+                 "scale it down: at most 9 * 10^18 square metres can be used");
+    kept.insert(kept.end(), indices.data.begin() + from, indices.data.begin() + 3 * t);
+    from = 3 * t + 3;
+  }
+  kept.insert(kept.end(), indices.data.begin() + from, indices.data.end());
+  degenerate_ += bad.size();
+  return Array<uint32_t>::of(std::move(kept));
+}
+
+void Meshes::finish(Scene& scene) {
+  scene.meshes = std::move(read_);
+  scene.degenerateTriangles = degenerate_;
+  const size_t unused = meshes_.size() - meshOf_.size();
+  if (unused > 0) leftOut_.add(std::to_string(unused) + " meshes", "no object of the scene uses them");
+}
+
+}  // namespace wardmis

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `meshes`: triangles, with strips and fans converted and degenerate triangles dropped.
+#pragma once
+
+#include <vector>
+
+#include "gltf/accessor.h"
+#include "gltf/left_out.h"
+#include "gltf/material.h"
+#include "scene/scene.h"
+
+namespace wardmis {
+
+class Meshes {
+ public:
+  Meshes(const Json& root, Accessors& accessors, Buffers& buffers, Materials& materials, LeftOut& leftOut);
+
+  // The index in Scene::meshes of the mesh whose index stands at `use`; read when it is first used. -1: no triangles.
+  int use(const Json& use);
+  void finish(Scene& scene);
+
+ private:
+  Mesh read(const Json& json);
+  // decoded: the triangles' indices, where they do not come from an accessor.
+  Array<uint32_t> triangles(const Json& primitive, const Array<Vec3f>& positions, const Json& position,
+                            const Array<uint32_t>* decoded);
+  Array<Vec2f> turned(const Array<Vec2f>& uvs, const Json& place);
+  Array<uint32_t> withoutDegenerate(const Json& place, Array<uint32_t> indices, std::span<const Vec3f> positions);
+
+  JsonArray meshes_;
+  Accessors& accessors_;
+  Buffers& buffers_;
+  Materials& materials_;
+  LeftOut& leftOut_;
+  std::vector<Mesh> read_;
+  std::unordered_map<size_t, int> meshOf_;  // by index in the file
+  uint64_t triangles_ = 0, degenerate_ = 0;
+};
+
+}  // namespace wardmis

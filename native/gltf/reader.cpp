@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "gltf/reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "gltf/accessor.h"
+#include "gltf/file.h"
+#include "gltf/json.h"
+#include "gltf/left_out.h"
+#include "gltf/material.h"
+#include "gltf/mesh.h"
+#include "gltf/node.h"
+
+namespace wardmis {
+namespace {
+
+constexpr const char* kExtension = "WARDMIS_scene";
+constexpr int kLargestSide = 1 << 16;
+
+void checkVersion(const Json& root) {
+  const Json version = root.at("asset").at("version");
+  const std::string_view text = version.string();
+  if (!text.starts_with("2.")) version.failExpected("glTF version 2.x");
+}
+
+void checkExtensions(const Json& root, LeftOut& leftOut) {
+  // KHR_mesh_quantization only allows more component types, which the accessors take anyway.
+  constexpr std::string_view kKnown[] = {kExtension,
+                                         "KHR_lights_punctual",
+                                         "KHR_texture_transform",
+                                         "KHR_materials_emissive_strength",
+                                         "KHR_materials_unlit",
+                                         "KHR_mesh_quantization",
+                                         "KHR_draco_mesh_compression",
+                                         "EXT_meshopt_compression",
+                                         "KHR_meshopt_compression",
+                                         "EXT_texture_webp",
+                                         "EXT_mesh_gpu_instancing"};
+  // Of these the rest can be shown without; what is lost is said for each material and image.
+  constexpr std::string_view kOfSurfaces[] = {"KHR_materials_", "KHR_texture_", "EXT_texture_", "MSFT_texture_",
+                                              "GOOGLE_texture_"};
+  const auto isKnown = [&](std::string_view name) {
+    return std::ranges::find(kKnown, name) != std::end(kKnown) ||
+           std::ranges::any_of(kOfSurfaces, [&](std::string_view start) { return name.starts_with(start); });
+  };
+  const JsonArray required = root.array("extensionsRequired"), used = root.array("extensionsUsed");
+  for (size_t i = 0; i < required.size(); i++)
+    if (!isKnown(required[i].string()))
+      required[i].fail(fmt::format("the scene requires the extension '{}', which this reader does not know",
+                                   cleaned(required[i].string())),
+                       "export the scene without it");
+  for (size_t i = 0; i < used.size(); i++)
+    if (std::ranges::find(kKnown, used[i].string()) == std::end(kKnown))
+      leftOut.add("extension " + cleaned(used[i].string()), "this reader does not know it");
+}
+
+Film readFilm(const Json& json) {
+  constexpr std::pair<std::string_view, FilterType> kFilters[] = {
+      {"box", FilterType::kBox}, {"gaussian", FilterType::kGaussian}, {"blackman-harris", FilterType::kBlackmanHarris}};
+  Film film;
+  const auto ints = [](const JsonArray& array, size_t n, const Json& place, int low) {
+    if (array.size() != n) place.failExpected(fmt::format("{} whole numbers", n));
+    std::array<int, 4> out{};
+    for (size_t i = 0; i < n; i++) out[i] = static_cast<int>(array[i].integer(low, kLargestSide));
+    return out;
+  };
+  const Json resolution = json.at("resolution");
+  const auto size = ints(resolution.array(), 2, resolution, 1);
+  film.width = film.x1 = size[0];
+  film.height = film.y1 = size[1];
+  if (uint64_t(film.width) * film.height > uint64_t(1) << 28) resolution.failExpected("at most 2^28 pixels");
+  if (const auto border = json.find("border")) {
+    const auto b = ints(border->array(), 4, *border, 0);
+    film.x0 = b[0], film.y0 = b[1], film.x1 = b[2], film.y1 = b[3];
+    if (!(film.x0 < film.x1 && film.x1 <= film.width && film.y0 < film.y1 && film.y1 <= film.height))
+      border->failExpected(fmt::format("[x0, y0, x1, y1] within {} x {} pixels, not empty", film.width, film.height));
+  }
+  if (const auto filter = json.find("filter")) {
+    film.filter = filter->at("type").choice(kFilters);
+    film.filterWidth = filter->numberOr("width", film.filterWidth, 0.01f, 100);
+  }
+  film.exposure = json.numberOr("exposure", 1, 0);
+  film.transparent = json.booleanOr("transparent", false);
+  return film;
+}
+
+// Directions are looked up after it, so that it must have an inverse; rows may be of any length.
+void readWorldMatrix(const Json& json, float (&matrix)[9]) {
+  json.numbers(matrix);
+  const Vec3f x{matrix[0], matrix[1], matrix[2]}, y{matrix[3], matrix[4], matrix[5]},
+      z{matrix[6], matrix[7], matrix[8]};
+  const float lengths = length(x) * length(y) * length(z), determinant = std::abs(dot(cross(x, y), z));
+  if (!(determinant > 1e-5f * lengths && determinant > 1e-20f && lengths < 1e20f))
+    json.fail("it has no inverse: directions of the sky cannot be told from it", "use a rotation, or leave it out");
+}
+
+Scene read(const Bytes& file, const std::filesystem::path& folder, const std::string& name, bool needsCamera) {
+  LeftOut leftOut;
+  const GlbChunks chunks = splitGlb(file, name, leftOut);
+  const JsonDocument document(name, chunks.json);
+  const Json root(document);
+  checkVersion(root);
+  checkExtensions(root, leftOut);
+
+  Scene scene;
+  scene.path = name;
+  Buffers buffers(root, chunks.binary, folder, file.size());
+  Accessors accessors(root, buffers, file.size());
+  Materials materials(root, buffers, leftOut);
+  Meshes meshes(root, accessors, buffers, materials, leftOut);
+
+  if (const auto own = root.extension(kExtension)) {
+    scene.foreign = false;
+    const Json version = own->at("version");
+    if (version.integer(0, UINT64_MAX) != 1)
+      version.failExpected("version 1 of WARDMIS_scene; use a newer renderer for newer files");
+    constexpr std::pair<std::string_view, bool> kAxes[] = {{"Y", false}, {"Z", true}};
+    if (const auto axis = own->find("upAxis")) scene.zUp = axis->choice(kAxes);
+    if (const auto film = own->find("film")) {
+      scene.film = readFilm(*film);
+      scene.hasFilm = true;
+    }
+    if (const auto world = own->find("world")) {
+      const auto texture = world->find("texture");
+      scene.world.radiance = world->lightOr("radiance", texture ? Rgb{1, 1, 1} : Rgb{0, 0, 0});
+      if (texture && !isBlack(scene.world.radiance)) {
+        materials.useWorldTexture(texture->at("index"));
+        if (const auto matrix = texture->find("matrix")) readWorldMatrix(*matrix, scene.world.matrix);
+      }
+    }
+    const JsonArray notes = own->array("notes");
+    for (size_t i = 0; i < notes.size(); i++) scene.notes.emplace_back(notes[i].string());
+  }
+
+  readNodes(root, accessors, buffers, meshes, leftOut, needsCamera, scene);
+  if (root.array("animations").size() > 0) leftOut.add("animations", "one frame is rendered");
+  meshes.finish(scene);
+  materials.finish(scene);
+  scene.leftOut = leftOut.list();
+  scene.files = buffers.files();
+  return scene;
+}
+
+}  // namespace
+
+Scene readGlb(const std::filesystem::path& path, bool needsCamera) {
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  Scene scene = read(mapFile(path), folder, path.string(), needsCamera);
+  scene.files.insert(scene.files.begin(), path);
+  return scene;
+}
+
+Scene readGlb(std::span<const std::byte> bytes, const std::filesystem::path& folder, const std::string& name) {
+  // A copy: the scene's arrays are views, and outlive the caller's bytes.
+  auto copy = std::make_shared<const std::vector<std::byte>>(bytes.begin(), bytes.end());
+  return read({*copy, copy}, folder, name, false);
+}
+
+}  // namespace wardmis

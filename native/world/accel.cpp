@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "world/accel.h"
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+#include <fmt/format.h>
+
+#include "math/error.h"
+
+namespace wardmis {
+namespace {
+
+// Embree reads rays through these; the visibility kind travels in ray.flags for the filter.
+#if RTC_VERSION_MAJOR >= 4
+void trace(RTCScene scene, RTCRayHit& rh) {
+  RTCIntersectArguments args;
+  rtcInitIntersectArguments(&args);
+  args.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
+  rtcIntersect1(scene, &rh, &args);
+}
+void shadow(RTCScene scene, RTCRay& r) {
+  RTCOccludedArguments args;
+  rtcInitOccludedArguments(&args);
+  args.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
+  rtcOccluded1(scene, &r, &args);
+}
+#else
+void trace(RTCScene scene, RTCRayHit& rh) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  rtcIntersect1(scene, &context, &rh);
+}
+void shadow(RTCScene scene, RTCRay& r) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  rtcOccluded1(scene, &context, &r);
+}
+#endif
+
+void setRay(RTCRay& out, const Ray& r) {
+  out.org_x = r.origin.x, out.org_y = r.origin.y, out.org_z = r.origin.z;
+  out.dir_x = r.direction.x, out.dir_y = r.direction.y, out.dir_z = r.direction.z;
+  out.tnear = r.tMin, out.tfar = r.tMax;
+  out.time = 0, out.mask = ~0u, out.id = 0, out.flags = r.kind;
+}
+
+}  // namespace
+
+struct Accel::Impl {
+  // A geometry of the top level: a shape of a flat placement, or an instance of a shared mesh.
+  struct Top {
+    uint32_t placement, shape;
+  };
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  std::vector<RTCScene> shared;
+  std::vector<Top> tops;
+  const Geometry* geometry = nullptr;
+  // Placements that some kind of ray does not see; empty if all see all.
+  std::vector<uint8_t> visibility;
+
+  ~Impl() {
+    if (scene != nullptr) rtcReleaseScene(scene);
+    for (RTCScene s : shared)
+      if (s != nullptr) rtcReleaseScene(s);
+    if (device != nullptr) rtcReleaseDevice(device);
+  }
+
+  // Rejects hits on what the ray's kind does not see. Set only on geometries that need it.
+  static void filter(const RTCFilterFunctionNArguments* args) {
+    const auto* impl = static_cast<const Impl*>(args->geometryUserPtr);
+    for (unsigned i = 0; i < args->N; ++i) {
+      if (args->valid[i] == 0) continue;
+      const unsigned instance = RTCHitN_instID(args->hit, args->N, i, 0);
+      const unsigned top = instance != RTC_INVALID_GEOMETRY_ID ? instance : RTCHitN_geomID(args->hit, args->N, i);
+      const uint8_t seenBy = impl->visibility[impl->tops[top].placement];
+      if ((seenBy & RTCRayN_flags(args->ray, args->N, i)) == 0) args->valid[i] = 0;
+    }
+  }
+
+  RTCGeometry triangles(const Shape& s) {
+    RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, s.positions, 0, sizeof(Vec3f),
+                               s.vertices);
+    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, s.indices, 0, 3 * sizeof(uint32_t),
+                               s.triangles);
+    return g;
+  }
+  void finish(RTCGeometry g, bool filtered) {
+    if (filtered) {
+      rtcSetGeometryUserData(g, this);
+      rtcSetGeometryIntersectFilterFunction(g, filter);
+      rtcSetGeometryOccludedFilterFunction(g, filter);
+    }
+    rtcSetGeometryBuildQuality(g, RTC_BUILD_QUALITY_HIGH);
+    rtcCommitGeometry(g);
+  }
+  RTCScene newScene() {
+    RTCScene s = rtcNewScene(device);
+    rtcSetSceneFlags(s, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST
+#if RTC_VERSION_MAJOR < 4
+                                                   | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION
+#endif
+                                                   ));
+    rtcSetSceneBuildQuality(s, RTC_BUILD_QUALITY_HIGH);
+    return s;
+  }
+  void check(const char* doing) {
+    const RTCError e = rtcGetDeviceError(device);
+    if (e == RTC_ERROR_NONE) return;
+    if (e == RTC_ERROR_OUT_OF_MEMORY)
+      throw Error(ExitCode::kMemory, fmt::format("not enough memory while {}", doing),
+                  "close other programs, or simplify the scene");
+    throw Error(ExitCode::kScene, fmt::format("Embree failed while {} (code {})", doing, static_cast<int>(e)));
+  }
+};
+
+Accel::Accel(const Geometry& geometry, int threads) : impl_(std::make_unique<Impl>()) {
+  Impl& a = *impl_;
+  a.geometry = &geometry;
+  a.device = rtcNewDevice(threads > 0 ? fmt::format("threads={}", threads).c_str() : nullptr);
+  if (a.device == nullptr) throw Error(ExitCode::kScene, "Embree could not be started");
+
+  std::vector<uint8_t> filtered(geometry.placements.size(), 0);
+  std::vector<uint8_t> filteredShape(geometry.shapes.size(), 0);
+  bool any = false;
+  for (size_t p = 0; p < geometry.placements.size(); ++p) {
+    const Placement& placement = geometry.placements[p];
+    if (placement.visibility == kSeenByAll) continue;
+    any = true;
+    filtered[p] = 1;
+    for (uint32_t s = 0; s < placement.shapes; ++s) filteredShape[placement.firstShape + s] = 1;
+  }
+  if (any)
+    for (const Placement& p : geometry.placements) a.visibility.push_back(p.visibility);
+
+  a.scene = a.newScene();
+  std::vector<RTCScene> sharedOfShape(geometry.shapes.size(), nullptr);  // by a placement's first shape
+  for (uint32_t p = 0; p < geometry.placements.size(); ++p) {
+    const Placement& placement = geometry.placements[p];
+    if (placement.flat) {
+      for (uint32_t s = placement.firstShape; s < placement.firstShape + placement.shapes; ++s) {
+        RTCGeometry g = a.triangles(geometry.shapes[s]);
+        a.finish(g, filtered[p] != 0);
+        rtcAttachGeometryByID(a.scene, g, static_cast<unsigned>(a.tops.size()));
+        rtcReleaseGeometry(g);
+        a.tops.push_back({p, s});
+      }
+      continue;
+    }
+    RTCScene& sharedScene = sharedOfShape[placement.firstShape];
+    if (sharedScene == nullptr) {
+      sharedScene = a.shared.emplace_back(a.newScene());
+      for (uint32_t s = 0; s < placement.shapes; ++s) {
+        RTCGeometry g = a.triangles(geometry.shapes[placement.firstShape + s]);
+        a.finish(g, filteredShape[placement.firstShape + s] != 0);
+        rtcAttachGeometryByID(sharedScene, g, s);
+        rtcReleaseGeometry(g);
+      }
+      rtcCommitScene(sharedScene);
+    }
+    RTCGeometry g = rtcNewGeometry(a.device, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(g, sharedScene);
+    rtcSetGeometryTransform(g, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, &placement.toWorld);
+    rtcCommitGeometry(g);
+    rtcAttachGeometryByID(a.scene, g, static_cast<unsigned>(a.tops.size()));
+    rtcReleaseGeometry(g);
+    a.tops.push_back({p, placement.firstShape});
+  }
+  rtcCommitScene(a.scene);
+  a.check("building the acceleration structure");
+}
+
+Accel::~Accel() = default;
+Accel::Accel(Accel&&) noexcept = default;
+
+Hit Accel::intersect(const Ray& ray) const {
+  RTCRayHit rh;
+  setRay(rh.ray, ray);
+  rh.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  trace(impl_->scene, rh);
+  Hit h;
+  if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID) return h;
+  h.t = rh.ray.tfar;
+  h.u = rh.hit.u, h.v = rh.hit.v;
+  h.normal = {rh.hit.Ng_x, rh.hit.Ng_y, rh.hit.Ng_z};
+  h.triangle = rh.hit.primID;
+  if (rh.hit.instID[0] == RTC_INVALID_GEOMETRY_ID) {
+    const Impl::Top top = impl_->tops[rh.hit.geomID];
+    h.placement = top.placement, h.shape = top.shape;
+  } else {
+    const Impl::Top top = impl_->tops[rh.hit.instID[0]];
+    h.placement = top.placement, h.shape = top.shape + rh.hit.geomID;
+  }
+  return h;
+}
+
+bool Accel::occluded(const Ray& ray) const {
+  RTCRay r;
+  setRay(r, ray);
+  shadow(impl_->scene, r);
+  return r.tfar < 0;
+}
+
+const char* Accel::libraryVersion() { return "Embree " RTC_VERSION_STRING; }
+
+}  // namespace wardmis

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Ray queries. The only place that knows Embree (3.13 and 4).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "world/geometry.h"
+
+namespace wardmis {
+
+// What a ray is for; it meets what is visible to that kind.
+struct Ray {
+  Vec3f origin, direction;  // unit
+  // Not from 0: a ray that starts exactly in a surface's plane does not meet that surface.
+  float tMin = 1e-15f, tMax = 3.4e38f;
+  Visibility kind = kSeenByCamera;
+};
+
+struct Hit {
+  float t = 3.4e38f;
+  float u = 0, v = 0;     // barycentric weights of the second and third vertex
+  Vec3f normal{0, 0, 0};  // geometric, not normalised; space of the shape (world if the placement is flat)
+  uint32_t placement = ~0u, shape = ~0u, triangle = 0;
+
+  bool valid() const { return placement != ~0u; }
+};
+
+class Accel {
+ public:
+  // Builds over `geometry`, which must outlive it. threads: 0 for all. Throws Error(kMemory) and Error(kScene).
+  Accel(const Geometry& geometry, int threads);
+  ~Accel();
+  Accel(Accel&&) noexcept;
+
+  Hit intersect(const Ray& ray) const;
+  bool occluded(const Ray& ray) const;
+
+  static const char* libraryVersion();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace wardmis

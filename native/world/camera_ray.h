@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From a point on the film and on the lens to a ray: Blender's camera (docs/scene-format.md).
+#pragma once
+
+#include <cmath>
+
+#include "math/number.h"
+#include "math/warp.h"
+#include "world/accel.h"
+
+namespace wardmis {
+
+class CameraRays {
+ public:
+  CameraRays(const Camera& camera, const Film& film) : camera_(camera), film_(film) {
+    const Vec3f n = cross(camera.toWorld.x, camera.toWorld.y);
+    toDepth_ = n / -dot(n, camera.toWorld.z);
+  }
+
+  bool needsLens() const { return camera_.lensRadius > 0; }
+
+  // (px, py): film position in pixels of the full frame from its bottom left; u: lens.
+  Ray ray(float px, float py, Vec2f u) const {
+    const Camera& c = camera_;
+    const float x = c.left + px / static_cast<float>(film_.width) * (c.right - c.left);
+    const float y = c.bottom + py / static_cast<float>(film_.height) * (c.top - c.bottom);
+    Vec3f origin{0, 0, 0}, direction{x, y, -1};
+    if (c.orthographic) origin = {x, y, 0}, direction = {0, 0, -1};
+    if (c.lensRadius > 0) {
+      const Vec3f focus = origin + direction * c.focusDistance;
+      const Vec2f lens = c.blades < 3 ? toDisk(u) : onPolygon(u);
+      origin += Vec3f{lens.x * c.lensRadius / c.bladeRatio, lens.y * c.lensRadius, 0};
+      direction = focus - origin;
+    }
+    // clip distances are planar depths: along the ray they stretch by |direction| / depth
+    const float stretch = length(direction) / -direction.z;
+    Ray r;
+    r.origin = c.toWorld.point(origin);
+    r.direction = normalize(c.toWorld.vector(direction));
+    r.tMin = c.clipNear * stretch;
+    r.tMax = c.clipFar * stretch;
+    r.kind = kSeenByCamera;
+    return r;
+  }
+  // Planar depth of a point at distance t along a ray of this camera.
+  float depth(const Ray& r, float t) const { return dot(r.direction, toDepth_) * t; }
+
+ private:
+  // Uniform on a regular polygon inscribed in the unit circle.
+  Vec2f onPolygon(Vec2f u) const {
+    const auto n = static_cast<float>(camera_.blades);
+    const float corner = std::min(std::floor(u.x * n), n - 1);
+    const Vec2f b = toTriangle(Vec2f{u.x * n - corner, u.y});
+    const float step = 2 * kPi<float> / n, a0 = camera_.bladeRotation + corner * step, a1 = a0 + step;
+    return {b.x * std::cos(a0) + b.y * std::cos(a1), b.x * std::sin(a0) + b.y * std::sin(a1)};
+  }
+  const Camera& camera_;
+  const Film& film_;
+  Vec3f toDepth_;  // minus the z of a vector in the camera's axes
+};
+
+}  // namespace wardmis

@@ -1,0 +1,517 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "world/emitters.h"
+
+#include <cmath>
+
+#include "math/number.h"
+#include "math/warp.h"
+#include "scene/inputs.h"
+
+namespace wardmis {
+namespace {
+
+constexpr float kFar = 3e38f;
+constexpr float kPif = kPi<float>;
+
+// Luminances of emissive triangles, for their selection.
+class TriangleLuminance {
+ public:
+  explicit TriangleLuminance(const Scene& scene) : scene_(scene), means_(scene.textures.size(), -1) {}
+
+  // Of a texture: the mean over a grid that is about as fine as the texels that the triangle covers. The grid may miss
+  // what shines between its points, and a triangle that shines must be aimed at: never less than a share of the image's
+  // own mean.
+  double of(const Shape& s, uint32_t triangle) {
+    const ColorInput& e = scene_.materials[static_cast<size_t>(s.material)].emission;
+    if (e.texture.texture < 0 || s.part->uvs.empty()) return double(strength(e.value));
+    const uint32_t* i = s.indices + 3 * size_t{triangle};
+    const Vec2f a = s.part->uvs[i[0]], b = s.part->uvs[i[1]], c = s.part->uvs[i[2]];
+    const int n = divisions(e.texture, a, b, c);
+    const auto at = [&](float u, float v) {
+      const float w = 1 - u - v;
+      const Vec2f uv{w * a.x + u * b.x + v * c.x, w * a.y + u * b.y + v * c.y};
+      return double(strength(e.value * sampleRgb(scene_, e.texture, uv)));
+    };
+    double sum = 0;
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < n - y; ++x) {  // the middles of the n^2 triangles that it divides into
+        const float u = static_cast<float>(x), v = static_cast<float>(y), size = 1 / static_cast<float>(n);
+        sum += at((u + 1 / 3.f) * size, (v + 1 / 3.f) * size);
+        if (x < n - y - 1) sum += at((u + 2 / 3.f) * size, (v + 2 / 3.f) * size);
+      }
+    constexpr double kLeast = 0.02;
+    return std::max(sum / (n * n), kLeast * mean(e));
+  }
+
+ private:
+  static constexpr float kMostDivisions = 16;
+
+  const Image& image(int texture) const {
+    return scene_.images[static_cast<size_t>(scene_.textures[static_cast<size_t>(texture)].image)];
+  }
+  int divisions(const TextureUse& use, Vec2f a, Vec2f b, Vec2f c) const {
+    const Image& texels = image(use.texture);
+    a = transformed(use, a), b = transformed(use, b), c = transformed(use, c);
+    const float area = 0.5f * std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
+    const float covered = area * static_cast<float>(texels.width) * static_cast<float>(texels.height);
+    return covered > 1 ? static_cast<int>(std::ceil(std::min(std::sqrt(covered), kMostDivisions))) : 1;
+  }
+  double mean(const ColorInput& e) {
+    double& known = means_[static_cast<size_t>(e.texture.texture)];
+    if (known < 0) {
+      const Image& texels = image(e.texture.texture);
+      const size_t count = static_cast<size_t>(texels.width) * static_cast<size_t>(texels.height);
+      known = 0;
+      for (size_t i = 0; i < count; ++i) known += double(strength(texelRgb(texels, i)));
+      known /= static_cast<double>(count);
+    }
+    return known * double(strength(e.value));
+  }
+
+  const Scene& scene_;
+  std::vector<double> means_;  // luminance of each texture's image; < 0: not known yet
+};
+
+// The rectangle seen from a point, for sampling its solid angle (Urena, Fajardo and King 2013, "An area-preserving
+// parametrization for spherical rectangles").
+struct SphericalRectangle {
+  float x0, x1, y0, y1, z0, b0, b1, k, solidAngle;
+
+  SphericalRectangle(float ax, float bx, float ay, float by, float z) : x0(ax), x1(bx), y0(ay), y1(by), z0(z) {
+    const float z2 = z0 * z0;
+    const float n0 = -y0 / std::sqrt(z2 + y0 * y0), n1 = x1 / std::sqrt(z2 + x1 * x1);
+    const float n2 = y1 / std::sqrt(z2 + y1 * y1), n3 = -x0 / std::sqrt(z2 + x0 * x0);
+    b0 = n0, b1 = n2;
+    k = 2 * kPif - std::acos(-n2 * n3) - std::acos(-n3 * n0);
+    solidAngle = std::acos(-n0 * n1) + std::acos(-n1 * n2) - k;
+  }
+  Vec2f sample(Vec2f u) const {
+    const float a = u.x * solidAngle + k;
+    const float f = (std::cos(a) * b0 - b1) / std::sin(a);
+    const float c = std::clamp(std::copysign(1 / std::sqrt(f * f + b0 * b0), f), -1.0f, 1.0f);
+    const float x = std::clamp(-(c * z0) / std::sqrt(std::max(1e-20f, 1 - c * c)), x0, x1);
+    const float d2 = x * x + z0 * z0;
+    const float h0 = y0 / std::sqrt(d2 + y0 * y0), h1 = y1 / std::sqrt(d2 + y1 * y1);
+    const float h = h0 + u.y * (h1 - h0);
+    const float y = h * h < 1 - 1e-6f ? h * std::sqrt(d2) / std::sqrt(1 - h * h) : y1;
+    return {x, std::clamp(y, y0, y1)};
+  }
+};
+
+}  // namespace
+
+Emitters::Emitters(const Scene& scene, Geometry& geometry, const Environment& environment)
+    : scene_(scene), geometry_(geometry), environment_(environment) {
+  const float crossSection = kPif * geometry.radius() * geometry.radius();
+  std::vector<double> power;
+
+  for (const Light& light : scene.lights) {
+    if (isBlack(light.emitted)) continue;
+    Lamp l{};
+    l.emitted = light.emitted;
+    l.visibility = light.visibility;
+    l.shadow = light.shadow;
+    l.maxBounces = light.maxBounces;
+    l.center = light.toWorld.t;
+    const double intensity = double(strength(light.emitted));  // times an area: beyond float for the strongest
+    double w = 0;
+    switch (light.type) {
+      case LightType::kArea: {
+        l.kind = light.ellipse ? Kind::kEllipse : Kind::kRectangle;
+        l.halfX = light.toWorld.x * (0.5f * light.sizeX);
+        l.halfY = light.toWorld.y * (0.5f * light.sizeY);
+        const Vec3f n = cross(l.halfX, l.halfY);
+        if (!(dot(n, n) > 0)) continue;  // without area
+        l.normal = normalize(n);
+        if (dot(l.normal, light.toWorld.z) > 0) l.normal = -l.normal;  // emits along -z
+        l.axis = normalize(-light.toWorld.z);
+        l.tilted = dot(l.axis, l.normal) < 1 - 1e-6f;
+        if (!l.tilted) l.axis = l.normal;
+        l.area = length(n) * (light.ellipse ? kPif : 4.0f);
+        l.spread = light.spread < kPif - 1e-4f;
+        l.spreadHalf = 0.5f * light.spread;
+        l.spreadTan = l.spread ? std::tan(l.spreadHalf) : 0;
+        w = intensity * l.area * kPif;
+        break;
+      }
+      case LightType::kPoint:
+      case LightType::kSpot: {
+        l.radius = light.radius;
+        l.kind = !(light.radius > 0) ? Kind::kDeltaPoint : light.facing ? Kind::kFacingDisk : Kind::kSphere;
+        if (light.radius > 0) l.emitted = light.emitted / (kPif * light.radius * light.radius);
+        w = intensity * 4 * kPif;
+        if (light.type == LightType::kSpot) {
+          l.spot = true;
+          l.cosine = light.cosine;
+          l.cosHalf = std::cos(0.5f * light.angle);
+          l.blend = light.blend;
+          l.toLocal = light.toWorld;
+          w *= 0.5 * (1 - l.cosHalf);
+        }
+        break;
+      }
+      case LightType::kSun:
+        l.center = normalize(light.toWorld.z);
+        l.kind = !(light.angle > 1e-5f) ? Kind::kDeltaSun : light.flat ? Kind::kSunDisk : Kind::kSunCone;
+        if (l.kind != Kind::kDeltaSun) {
+          const float half = 0.5f * light.angle, s = std::sin(0.5f * half);
+          l.oneMinusCos = 2 * s * s;
+          if (light.flat) {
+            // integral over the disk of cos = 2 cos h/(1 + cos h) times that of 1: the irradiance, and the power
+            const float cosHalf = std::max(1e-6f, std::cos(half));
+            const float all = (1 + cosHalf) / (2 * cosHalf);
+            l.radius = std::sqrt(std::max(0.0f, 1 - cosHalf * cosHalf)) / cosHalf;
+            l.area = kPif * l.radius * l.radius;
+            l.emitted = light.emitted * (all / l.area);
+            w = intensity * double(all) * crossSection;
+            break;
+          }
+          const float sinHalf = std::sin(half);
+          l.emitted = light.emitted / (kPif * sinHalf * sinHalf);
+        }
+        w = intensity * crossSection;
+        break;
+    }
+    const auto index = static_cast<uint32_t>(lamps_.size());
+    l.exclusive = l.kind == Kind::kDeltaPoint || l.kind == Kind::kDeltaSun || !l.shadow;
+    (l.exclusive ? exclusive_ : shared_) = true;
+    if (!l.exclusive) (light.type == LightType::kSun ? infinite_ : finite_).push_back(index);
+    lamps_.push_back(l);
+    power.push_back(std::max(w, 0.0));
+  }
+
+  if (environment.exists()) {
+    infinite_.push_back(static_cast<uint32_t>(lamps_.size()));
+    Lamp l{};
+    l.kind = Kind::kEnvironment;
+    lamps_.push_back(l);
+    power.push_back(environment.sampled() ? environment.integral() * crossSection : 0.0);
+    shared_ |= environment.sampled();
+  }
+
+  TriangleLuminance luminances(scene);
+  std::vector<std::vector<float>> ofShape(geometry.shapes.size());  // of its triangles, whatever its placements
+  for (uint32_t p = 0; p < geometry.placements.size(); ++p) {
+    Placement& placement = geometry.placements[p];
+    placement.firstEmitter = static_cast<uint32_t>(emissive_.size());
+    uint32_t offset = 0;
+    for (uint32_t s = placement.firstShape; s < placement.firstShape + placement.shapes; ++s) {
+      Shape& shape = geometry.shapes[s];
+      if (isBlack(scene.materials[static_cast<size_t>(shape.material)].emission.value)) continue;
+      shape.emitterOffset = offset;
+      offset += shape.triangles;
+      std::vector<float>& strength = ofShape[s];
+      for (uint32_t t = static_cast<uint32_t>(strength.size()); t < shape.triangles; ++t)
+        strength.push_back(static_cast<float>(luminances.of(shape, t)));
+      for (uint32_t t = 0; t < shape.triangles; ++t) {
+        const Vec3f a = geometry.corner(placement, shape, t, 0), b = geometry.corner(placement, shape, t, 1),
+                    c = geometry.corner(placement, shape, t, 2);
+        const double w = 2 * kPif * 0.5 * length(cross(b - a, c - a)) * double(strength[t]);
+        emissive_.push_back({p, s, t});
+        power.push_back(std::isfinite(w) && w > 0 ? w : 0.0);
+      }
+    }
+  }
+  triangles_ = emissive_.size();
+  shared_ |= triangles_ > 0;
+  table_ = AliasTable(power);
+}
+
+float Emitters::cosine(const Lamp& lamp, Vec3f d) {
+  const float c = dot(d, lamp.normal);
+  if (!lamp.tilted) return c;
+  return dot(d, lamp.axis) > 0 ? std::abs(c) : 0;
+}
+
+// Radiance (finite lights) or intensity (delta lights) leaving in unit direction d.
+Rgb Emitters::profile(const Lamp& lamp, Vec3f d) {
+  float f = 1;
+  if (lamp.tilted) {  // as Cycles has it, the light falls off by the angle to the axis, whatever the plane
+    const float plane = cosine(lamp, d);
+    if (!(plane > 0)) return {0, 0, 0};
+    f = dot(d, lamp.axis) / plane;
+  }
+  if (lamp.spread) {  // area light of limited spread: Cycles' formula
+    const float cosA = dot(d, lamp.axis);
+    if (!(cosA > 0)) return {0, 0, 0};
+    const float tanA = std::sqrt(std::max(0.0f, 1 - cosA * cosA)) / cosA;
+    f *= std::max(0.0f, (lamp.spreadTan - tanA) / (lamp.spreadTan - lamp.spreadHalf));
+  }
+  if (lamp.spot) {
+    const Vec3f local = lamp.toLocal.inverseVector(d);
+    const float c = -local.z / length(local);
+    if (!(c > lamp.cosHalf)) return {0, 0, 0};
+    const float x = lamp.blend > 0 ? std::min(1.0f, (c - lamp.cosHalf) / ((1 - lamp.cosHalf) * lamp.blend)) : 1.0f;
+    f = x * x * (3 - 2 * x);
+    if (lamp.cosine) f *= c;
+  }
+  return lamp.emitted * f;
+}
+
+// Whether points of a rectangle are sampled, not directions: seen small, where the solid angle would be lost to
+// cancellation (and the two hardly differ), and where it is no rectangle.
+bool Emitters::sampledByArea(const Lamp& lamp, float height, float d2) {
+  return lamp.tilted || lamp.area * height < 0.05f * d2 * std::sqrt(d2) ||
+         std::abs(dot(lamp.halfX, lamp.halfY)) > 1e-4f * length(lamp.halfX) * length(lamp.halfY);
+}
+
+LightSample Emitters::sampleRectangle(const Lamp& lamp, Vec3f from, Vec2f u) const {
+  LightSample s;
+  const Vec3f toCenter = lamp.center - from;
+  const float height = -dot(toCenter, lamp.normal);  // of the point above the light's plane
+  if (!(height > 0) && !lamp.tilted) return s;
+  const float d2 = dot(toCenter, toCenter);
+  Vec3f offset;
+  float pdf;
+  const float lx = length(lamp.halfX), ly = length(lamp.halfY);
+  if (sampledByArea(lamp, height, d2)) {
+    offset = lamp.halfX * (2 * u.x - 1) + lamp.halfY * (2 * u.y - 1);
+    pdf = 0;
+  } else {
+    const Vec3f ex = lamp.halfX / lx, ey = lamp.halfY / ly;
+    const float cx = dot(toCenter, ex), cy = dot(toCenter, ey);
+    const SphericalRectangle q(cx - lx, cx + lx, cy - ly, cy + ly, -height);
+    const Vec2f p = q.sample(u);
+    offset = ex * (p.x - cx) + ey * (p.y - cy);
+    pdf = 1 / q.solidAngle;
+    if (!(q.solidAngle > 1e-4f)) return s;
+  }
+  const Vec3f to = toCenter + offset;
+  const float t2 = dot(to, to);
+  s.distance = std::sqrt(t2);
+  s.direction = to / s.distance;
+  const float cosLight = cosine(lamp, -s.direction);
+  if (!(cosLight > 0)) return s;
+  s.pdf = pdf > 0 ? pdf : t2 / (cosLight * lamp.area);
+  s.radiance = profile(lamp, -s.direction);
+  return s;
+}
+
+float Emitters::pdfRectangle(const Lamp& lamp, Vec3f from, float t, float cosLight) const {
+  const Vec3f toCenter = lamp.center - from;
+  const float height = -dot(toCenter, lamp.normal);
+  const float d2 = dot(toCenter, toCenter);
+  if (sampledByArea(lamp, height, d2)) return t * t / (cosLight * lamp.area);
+  const float lx = length(lamp.halfX), ly = length(lamp.halfY);
+  const float cx = dot(toCenter, lamp.halfX) / lx, cy = dot(toCenter, lamp.halfY) / ly;
+  const SphericalRectangle q(cx - lx, cx + lx, cy - ly, cy + ly, -height);
+  return q.solidAngle > 1e-4f ? 1 / q.solidAngle : 0;
+}
+
+LightSample Emitters::sample(Vec3f from, ChoicePoint point, int bounces) const {
+  LightSample s;
+  const uint32_t index = table_.sample(point.x);
+  const Vec2f u{toCoordinate(point.x), point.y};
+  const float choice = table_.probability(index);
+  if (index >= lamps_.size()) {
+    const Triangle& e = emissive_[index - lamps_.size()];
+    const Placement& p = geometry_.placements[e.placement];
+    const Shape& shape = geometry_.shapes[e.shape];
+    const Vec3f a = geometry_.corner(p, shape, e.triangle, 0), ab = geometry_.corner(p, shape, e.triangle, 1) - a,
+                ac = geometry_.corner(p, shape, e.triangle, 2) - a;
+    const Vec2f b = toTriangle(u);
+    const Vec3f to = (a - from) + ab * b.x + ac * b.y;
+    const Vec3f n = cross(ab, ac);  // twice the area
+    const float t2 = dot(to, to);
+    if (!(t2 > 0)) return s;
+    s.distance = std::sqrt(t2);
+    s.direction = to / s.distance;
+    const float cosArea = std::abs(dot(s.direction, n)) * 0.5f;
+    if (!(cosArea > 0)) return s;
+    s.pdf = choice * t2 / cosArea;
+    const ColorInput& emission = scene_.materials[static_cast<size_t>(shape.material)].emission;
+    s.radiance = emission.value;
+    if (emission.texture.texture >= 0 && !shape.part->uvs.empty()) {
+      const uint32_t* i = shape.indices + 3 * size_t{e.triangle};
+      const Vec2f t0 = shape.part->uvs[i[0]], t1 = shape.part->uvs[i[1]], t2uv = shape.part->uvs[i[2]];
+      const float c = 1 - b.x - b.y;
+      s.radiance *= sampleRgb(scene_, emission.texture,
+                              {c * t0.x + b.x * t1.x + b.y * t2uv.x, c * t0.y + b.x * t1.y + b.y * t2uv.y});
+    }
+    s.visibility = p.visibility;
+    return s;
+  }
+
+  const Lamp& lamp = lamps_[index];
+  if (bounces > lamp.maxBounces) return s;
+  switch (lamp.kind) {
+    case Kind::kRectangle:
+      s = sampleRectangle(lamp, from, u);
+      break;
+    case Kind::kEllipse: {
+      const Vec2f d = toDisk(u);
+      const Vec3f to = lamp.center + lamp.halfX * d.x + lamp.halfY * d.y - from;
+      const float t2 = dot(to, to);
+      s.distance = std::sqrt(t2);
+      s.direction = to / s.distance;
+      const float cosLight = cosine(lamp, -s.direction);
+      if (!(cosLight > 0)) return s;
+      s.pdf = t2 / (cosLight * lamp.area);
+      s.radiance = profile(lamp, -s.direction);
+      break;
+    }
+    case Kind::kFacingDisk: {
+      const Vec3f toCenter = lamp.center - from;
+      const float d2 = dot(toCenter, toCenter);
+      if (!(d2 > 0)) return s;
+      const Framef f = Framef::around(toCenter / std::sqrt(d2));
+      const Vec2f d = toDisk(u);
+      const Vec3f to = toCenter + (f.x * d.x + f.y * d.y) * lamp.radius;
+      const float t2 = dot(to, to);
+      s.distance = std::sqrt(t2);
+      s.direction = to / s.distance;
+      s.pdf = t2 * s.distance / (std::sqrt(d2) * kPif * lamp.radius * lamp.radius);
+      s.radiance = profile(lamp, -s.direction);
+      break;
+    }
+    case Kind::kSphere: {
+      const Vec3f toCenter = lamp.center - from;
+      const float d2 = dot(toCenter, toCenter), r2 = lamp.radius * lamp.radius;
+      if (!(d2 > r2)) return s;  // inside: only met by the surface's techniques
+      const float sin2 = r2 / d2;
+      const float oneMinusCos = sin2 / (1 + std::sqrt(1 - sin2));
+      const float d = std::sqrt(d2);
+      s.direction = Framef::around(toCenter / d).toWorld(toCone(u, oneMinusCos));
+      const float along = dot(s.direction, toCenter);
+      s.distance = along - std::sqrt(std::max(0.0f, r2 - (d2 - along * along)));
+      s.pdf = 1 / (2 * kPif * oneMinusCos);
+      s.radiance = profile(lamp, -s.direction);
+      break;
+    }
+    case Kind::kDeltaPoint: {
+      const Vec3f to = lamp.center - from;
+      const float d2 = dot(to, to);
+      if (!(d2 > 0)) return s;
+      s.distance = std::sqrt(d2);
+      s.direction = to / s.distance;
+      s.radiance = profile(lamp, -s.direction) / d2;
+      s.pdf = 1;
+      break;
+    }
+    case Kind::kDeltaSun:
+      s.distance = kFar;
+      s.direction = lamp.center;
+      s.radiance = lamp.emitted;
+      s.pdf = 1;
+      break;
+    case Kind::kSunCone:
+      s.distance = kFar;
+      s.direction = Framef::around(lamp.center).toWorld(toCone(u, lamp.oneMinusCos));
+      s.radiance = lamp.emitted;
+      s.pdf = 1 / (2 * kPif * lamp.oneMinusCos);
+      break;
+    case Kind::kSunDisk: {
+      const Framef f = Framef::around(lamp.center);
+      const Vec2f d = toDisk(u);
+      const Vec3f to = lamp.center + (f.x * d.x + f.y * d.y) * lamp.radius;
+      const float cos3 = 1 / (dot(to, to) * length(to));  // of the angle to the axis, cubed
+      s.distance = kFar;
+      s.direction = normalize(to);
+      s.radiance = lamp.emitted / cos3;
+      s.pdf = 1 / (lamp.area * cos3);
+      break;
+    }
+    case Kind::kEnvironment:
+      s.distance = kFar;
+      s.direction = environment_.sample(point);
+      s.radiance = environment_.radiance(s.direction);
+      s.pdf = environment_.pdf(s.direction);
+      break;
+  }
+  s.pdf *= choice;
+  s.visibility = lamp.visibility;
+  s.shadow = lamp.shadow;
+  s.exclusive = lamp.exclusive;
+  return s;
+}
+
+bool Emitters::meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax, EmitterHit& hit) const {
+  const Vec3f d = ray.direction;
+  if ((lamp.visibility & ray.kind) == 0) return false;
+  float pdf = 0;
+  switch (lamp.kind) {
+    case Kind::kRectangle:
+    case Kind::kEllipse: {
+      const float cosLight = cosine(lamp, -d);
+      if (!(cosLight > 0)) return false;  // one-sided
+      const Vec3f toCenter = lamp.center - ray.origin;
+      const float t = dot(toCenter, lamp.normal) / dot(d, lamp.normal);
+      if (!(t > ray.tMin) || !(t < tMax)) return false;
+      const Vec3f p = d * t - toCenter;
+      // solve p = a halfX + b halfY in the plane (the axes need not be orthogonal)
+      const Vec3f n = cross(lamp.halfX, lamp.halfY);
+      const float n2 = dot(n, n);
+      const float a = dot(cross(p, lamp.halfY), n) / n2, b = dot(cross(lamp.halfX, p), n) / n2;
+      if (lamp.kind == Kind::kRectangle ? std::max(std::abs(a), std::abs(b)) > 1 : a * a + b * b > 1) return false;
+      pdf =
+          lamp.kind == Kind::kRectangle ? pdfRectangle(lamp, ray.origin, t, cosLight) : t * t / (cosLight * lamp.area);
+      hit.radiance = profile(lamp, -d);
+      break;
+    }
+    case Kind::kFacingDisk: {
+      const Vec3f toCenter = lamp.center - ray.origin;
+      const float d2 = dot(toCenter, toCenter), along = dot(d, toCenter);
+      if (!(along > 0)) return false;
+      const float t = d2 / along;
+      if (!(t > ray.tMin) || !(t < tMax)) return false;
+      const Vec3f p = d * t - toCenter;
+      if (dot(p, p) > lamp.radius * lamp.radius) return false;
+      pdf = t * t * t / (std::sqrt(d2) * kPif * lamp.radius * lamp.radius);
+      hit.radiance = profile(lamp, -d);
+      break;
+    }
+    case Kind::kSphere: {
+      const Vec3f toCenter = lamp.center - ray.origin;
+      const float d2 = dot(toCenter, toCenter), along = dot(d, toCenter), r2 = lamp.radius * lamp.radius;
+      const Vec3f closest = toCenter - d * along;
+      const float q = r2 - dot(closest, closest);
+      if (!(q >= 0)) return false;
+      const float root = std::sqrt(q);
+      const float t = d2 > r2 ? along - root : along + root;
+      if (!(t > ray.tMin) || !(t < tMax)) return false;
+      if (d2 > r2) {
+        const float sin2 = r2 / d2;
+        pdf = 1 / (2 * kPif * (sin2 / (1 + std::sqrt(1 - sin2))));
+      }
+      hit.radiance = profile(lamp, -d);
+      break;
+    }
+    case Kind::kSunCone: {
+      const Vec3f apart = d - lamp.center;  // 1 - cos = |d - c|^2 / 2, exact for narrow cones
+      if (!(0.5f * dot(apart, apart) <= lamp.oneMinusCos)) return false;
+      pdf = 1 / (2 * kPif * lamp.oneMinusCos);
+      hit.radiance = lamp.emitted;
+      break;
+    }
+    case Kind::kSunDisk: {
+      const Vec3f apart = d - lamp.center;
+      const float cosAxis = dot(d, lamp.center);
+      if (!(0.5f * dot(apart, apart) <= lamp.oneMinusCos) || !(cosAxis > 0)) return false;
+      const float cos3 = cosAxis * cosAxis * cosAxis;
+      pdf = 1 / (lamp.area * cos3);
+      hit.radiance = lamp.emitted / cos3;
+      break;
+    }
+    case Kind::kEnvironment:
+      pdf = environment_.pdf(d);
+      hit.radiance = environment_.radiance(d);
+      break;
+    case Kind::kDeltaPoint:
+    case Kind::kDeltaSun:
+      return false;
+  }
+  hit.pdf = pdf > 0 ? pdf * probability(index) : 0;
+  hit.visibility = lamp.visibility;
+  return true;
+}
+
+float Emitters::trianglePdf(const Placement& p, const Hit& hit, Vec3f direction) const {
+  const Shape& shape = geometry_.shapes[hit.shape];
+  const Vec3f a = geometry_.corner(p, shape, hit.triangle, 0), b = geometry_.corner(p, shape, hit.triangle, 1),
+              c = geometry_.corner(p, shape, hit.triangle, 2);
+  const float cosArea = std::abs(dot(direction, cross(b - a, c - a))) * 0.5f;
+  if (!(cosArea > 0)) return 0;
+  return probability(lamps_.size() + p.firstEmitter + shape.emitterOffset + hit.triangle) * hit.t * hit.t / cosArea;
+}
+
+}  // namespace wardmis

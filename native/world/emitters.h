@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Everything that emits, as one list that the light technique picks from in proportion to power: light objects, the
+// environment's image, emissive triangles. Each emitter is an integral of its own: a direction that meets several is
+// weighted for each by itself.
+#pragma once
+
+#include <limits>
+
+#include "world/accel.h"
+#include "world/alias.h"
+#include "world/environment.h"
+
+namespace wardmis {
+
+// A direction towards an emitter, as seen from a point.
+struct LightSample {
+  Vec3f direction{0, 0, 0};  // unit
+  float distance = 0;        // to the emitter; 3e38 for the infinitely far
+  Rgb radiance{0, 0, 0};     // arriving, without occlusion; of a delta light: irradiance facing it
+  float pdf =
+      0;  // per solid angle, the choice of the emitter included; of a delta light: of the choice; 0: nothing arrives
+  bool exclusive = false;  // no other technique meets this emitter: a delta light, or one without shadows
+  bool shadow = true;      // occluders count
+  uint8_t visibility = kSeenByAll;
+};
+
+// What a ray meets: one emitter.
+struct EmitterHit {
+  Rgb radiance{0, 0, 0};
+  float pdf = 0;  // density of the light technique at this direction, for this emitter; 0 where it does not sample it
+  uint8_t visibility = kSeenByAll;
+};
+
+class Emitters {
+ public:
+  // Fills Placement::firstEmitter.
+  Emitters(const Scene& scene, Geometry& geometry, const Environment& environment);
+
+  bool any() const { return !table_.empty(); }
+  // Emitters that the surface's techniques meet too, and emitters that they cannot (delta lights, lights without
+  // shadows).
+  bool anyShared() const { return shared_; }
+  bool anyExclusive() const { return exclusive_; }
+  uint64_t emissiveTriangles() const { return triangles_; }
+
+  // bounces: by which the path has come to `from`.
+  LightSample sample(Vec3f from, ChoicePoint u, int bounces = 0) const;
+
+  // Calls f(EmitterHit) for each light object that the ray meets before tMax, and, where the ray goes on for ever
+  // (escaped), for the environment and suns. bounces: by which the path has come to the ray's origin; 0 from the
+  // camera.
+  template <class F>
+  void along(const Ray& ray, float tMax, bool escaped, int bounces, F&& f) const;
+
+  // The emissive triangle that was hit.
+  float trianglePdf(const Placement& p, const Hit& hit, Vec3f direction) const;
+
+ private:
+  enum class Kind : uint8_t {
+    kRectangle,
+    kEllipse,
+    kFacingDisk,
+    kSphere,
+    kDeltaPoint,
+    kDeltaSun,
+    kSunCone,
+    kSunDisk,
+    kEnvironment
+  };
+  struct Lamp {
+    Kind kind;
+    Vec3f center{};              // or, for suns, the direction towards it
+    Vec3f halfX{}, halfY{};      // rectangle, ellipse: half axes
+    Vec3f normal{};              // rectangle, ellipse: unit
+    Vec3f axis{};                // rectangle, ellipse: unit; where it looks
+    bool tilted = false;         // axis is not the normal: the light's node is sheared
+    float area = 0, radius = 0;  // sun disk: of the disk at distance 1
+    float oneMinusCos = 0;       // sun: 1 - cos of the half angle
+    Rgb emitted{};               // radiance; point intensity; sun irradiance
+    // angular profile
+    float spreadTan = 0, spreadHalf = 0;  // spread < pi
+    bool spread = false, spot = false, cosine = false;
+    float cosHalf = 0, blend = 0;
+    Affine toLocal{};  // spot: linear part only
+    uint8_t visibility = kSeenByAll;
+    bool shadow = true, exclusive = false;
+    int maxBounces = std::numeric_limits<int>::max();
+  };
+  float probability(size_t emitter) const {
+    return table_.empty() ? 0 : table_.probability(static_cast<uint32_t>(emitter));
+  }
+  // Rectangle, ellipse: of the angle between its plane's normal and d, which leaves it; not above 0: no light leaves
+  // there.
+  static float cosine(const Lamp& lamp, Vec3f d);
+  static bool sampledByArea(const Lamp& lamp, float height, float d2);
+  static Rgb profile(const Lamp& lamp, Vec3f fromLight);  // radiance or intensity in a direction leaving the light
+  bool meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax, EmitterHit& hit) const;
+  LightSample sampleRectangle(const Lamp& lamp, Vec3f from, Vec2f u) const;
+  float pdfRectangle(const Lamp& lamp, Vec3f from, float t, float cosLight) const;
+
+  const Scene& scene_;
+  const Geometry& geometry_;
+  const Environment& environment_;
+  std::vector<Lamp> lamps_;
+  struct Triangle {
+    uint32_t placement, shape, triangle;
+  };
+  std::vector<Triangle> emissive_;           // emitters lamps_.size() ...
+  AliasTable table_;                         // over lamps, then emissive triangles
+  std::vector<uint32_t> finite_, infinite_;  // indices of the lamps that a ray can meet
+  bool shared_ = false, exclusive_ = false;
+  uint64_t triangles_ = 0;
+};
+
+template <class F>
+void Emitters::along(const Ray& ray, float tMax, bool escaped, int bounces, F&& f) const {
+  EmitterHit hit;
+  for (uint32_t i : finite_)
+    if (bounces <= lamps_[i].maxBounces && meets(lamps_[i], i, ray, tMax, hit)) f(hit);
+  if (!escaped) return;
+  for (uint32_t i : infinite_)
+    if (bounces <= lamps_[i].maxBounces && meets(lamps_[i], i, ray, tMax, hit)) f(hit);
+}
+
+}  // namespace wardmis

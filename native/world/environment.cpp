@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "world/environment.h"
+
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+
+#include "math/number.h"
+#include "scene/inputs.h"
+
+namespace wardmis {
+namespace {
+
+// Equirectangular coordinates of a direction of any length, z up (docs/scene-format.md): u = 1/2 at +x... as Cycles.
+Vec2f toUv(Vec3f d) {
+  const float u = (std::atan2(d.y, d.x) - kPi<float>) / (-2 * kPi<float>);
+  const float v = 1 - std::atan2(std::sqrt(d.x * d.x + d.y * d.y), d.z) / kPi<float>;  // acos is coarse at the poles
+  return {u, v};
+}
+
+constexpr int kMaxTableWidth = 2048, kMaxTableHeight = 1024;
+
+}  // namespace
+
+Environment::Environment(const Scene& scene) : scene_(scene) {
+  const World& world = scene.world;
+  const float* m = world.matrix;
+  // inverse by cofactors; the reader has seen to it that the matrix is not singular
+  const float c[9] = {m[4] * m[8] - m[5] * m[7], m[2] * m[7] - m[1] * m[8], m[1] * m[5] - m[2] * m[4],
+                      m[5] * m[6] - m[3] * m[8], m[0] * m[8] - m[2] * m[6], m[2] * m[3] - m[0] * m[5],
+                      m[3] * m[7] - m[4] * m[6], m[1] * m[6] - m[0] * m[7], m[0] * m[4] - m[1] * m[3]};
+  const float det = m[0] * c[0] + m[1] * c[3] + m[2] * c[6];
+  for (int i = 0; i < 9; ++i) inverse_[i] = c[i] / det;
+  determinant_ = std::abs(det);
+
+  exists_ = !isBlack(world.radiance);
+  if (!exists_) return;
+  if (world.texture < 0) {
+    integral_ = 4 * kPi<float> * strength(world.radiance);
+    return;
+  }
+
+  // The table's cells hold the image's luminance, taken over each cell from a grid of looked-up values, so that the
+  // density is positive wherever the interpolated image is.
+  const Image& image = scene.images[static_cast<size_t>(scene.textures[static_cast<size_t>(world.texture)].image)];
+  width_ = std::min(image.width, kMaxTableWidth), height_ = std::min(image.height, kMaxTableHeight);
+  const int subX = (image.width + width_ - 1) / width_ * 2, subY = (image.height + height_ - 1) / height_ * 2;
+  for (int y = 0; y < height_; ++y) {
+    const bool up = 2 * y >= height_;
+    const double step = kPi<double> / height_, from = step * (up ? height_ - 1 - y : y);
+    const auto fromPole = [](double angle) { return 2 * std::pow(std::sin(angle / 2), 2); };
+    const double height = 2 * std::sin(from + step / 2) * std::sin(step / 2);
+    bands_.push_back({static_cast<float>(fromPole(from)), static_cast<float>(height), up});
+  }
+  std::vector<double> weights(static_cast<size_t>(width_) * static_cast<size_t>(height_));
+  TextureUse use;
+  use.texture = world.texture;
+  tbb::parallel_for(0, height_, [&](int y) {
+    const double band = double(bands_[static_cast<size_t>(y)].height);
+    for (int x = 0; x < width_; ++x) {
+      double sum = 0;
+      for (int j = 0; j <= subY; ++j)
+        for (int i = 0; i <= subX; ++i) {
+          const float u =
+              (static_cast<float>(x) + (static_cast<float>(i)) / static_cast<float>(subX)) / static_cast<float>(width_);
+          const float v = (static_cast<float>(y) + (static_cast<float>(j)) / static_cast<float>(subY)) /
+                          static_cast<float>(height_);
+          sum += strength(sampleRgb(scene, use, {u, v}) * world.radiance);
+        }
+      const float stretched = stretch(toImage(fromImage(inCell(x, static_cast<size_t>(y), 0.5f, 0.5f))));
+      weights[static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x)] =
+          sum / double((subX + 1) * (subY + 1)) * band * 2 * kPi<double> / width_ / double(stretched);
+    }
+  });
+  table_ = AliasTable(weights);
+  integral_ = static_cast<float>(table_.sum());
+  exists_ = !table_.empty();
+}
+
+Vec3f Environment::toImage(Vec3f d) const {
+  const Vec3f z = scene_.zUp ? Vec3f{d.x, -d.z, d.y} : d;
+  const float* m = scene_.world.matrix;
+  return {m[0] * z.x + m[1] * z.y + m[2] * z.z, m[3] * z.x + m[4] * z.y + m[5] * z.z,
+          m[6] * z.x + m[7] * z.y + m[8] * z.z};
+}
+
+Vec3f Environment::fromImage(Vec3f d) const {
+  const float* m = inverse_;
+  const Vec3f z = normalize(Vec3f{m[0] * d.x + m[1] * d.y + m[2] * d.z, m[3] * d.x + m[4] * d.y + m[5] * d.z,
+                                  m[6] * d.x + m[7] * d.y + m[8] * d.z});
+  return scene_.zUp ? Vec3f{z.x, z.z, -z.y} : z;
+}
+
+Rgb Environment::radiance(Vec3f direction) const {
+  if (scene_.world.texture < 0) return scene_.world.radiance;
+  TextureUse use;
+  use.texture = scene_.world.texture;
+  return scene_.world.radiance * sampleRgb(scene_, use, toUv(toImage(direction)));
+}
+
+// Of the image's frame, uniform in the cell's solid angle: in azimuth and in cos of the polar angle.
+Vec3f Environment::inCell(int x, size_t y, float u, float v) const {
+  const Band& band = bands_[y];
+  const float t = band.begin + v * band.height;  // 1 - cos of the angle to the pole
+  const float r = std::sqrt(std::max(0.0f, t * (2 - t)));
+  const float phi = kPi<float> - 2 * kPi<float> * ((static_cast<float>(x) + u) / static_cast<float>(width_));
+  return {r * std::cos(phi), r * std::sin(phi), band.up ? 1 - t : t - 1};
+}
+
+Vec3f Environment::sample(ChoicePoint u) const {
+  const uint32_t cell = table_.sample(u.x);
+  const auto width = static_cast<uint32_t>(width_);
+  return fromImage(inCell(static_cast<int>(cell % width), cell / width, toCoordinate(u.x), u.y));
+}
+
+float Environment::pdf(Vec3f direction) const {
+  if (table_.empty()) return 0;
+  const Vec3f image = toImage(direction);
+  const Vec2f uv = toUv(image);
+  const int x = std::clamp(static_cast<int>(uv.x * static_cast<float>(width_)), 0, width_ - 1);
+  const int y = std::clamp(static_cast<int>(uv.y * static_cast<float>(height_)), 0, height_ - 1);
+  const float solidAngle = bands_[static_cast<size_t>(y)].height * 2 * kPi<float> / static_cast<float>(width_);
+  return table_.probability(static_cast<uint32_t>(y * width_ + x)) / solidAngle * stretch(image);
+}
+
+}  // namespace wardmis

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "world/geometry.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <limits>
+
+#include "math/error.h"
+
+namespace wardmis {
+
+Geometry::Geometry(const Scene& scene) {
+  std::vector<uint32_t> uses(scene.meshes.size(), 0);
+  for (const Instance& i : scene.instances) ++uses[static_cast<size_t>(i.mesh)];
+
+  const auto addShapes = [&](const Mesh& mesh, const Affine* transform) {
+    for (const MeshPart& part : mesh.parts) {
+      // A copy even where nothing moves: Embree reads 16 bytes at each vertex, also at the last one.
+      std::vector<Vec3f>& moved = positions.emplace_back(part.positions.size() + 1);
+      tbb::parallel_for(tbb::blocked_range<size_t>(0, part.positions.size(), 1 << 15), [&](const auto& range) {
+        for (size_t v = range.begin(); v != range.end(); ++v)
+          moved[v] = transform != nullptr ? transform->point(part.positions[v]) : part.positions[v];
+      });
+      for (const Primitive& p : part.primitives)
+        if (!p.indices.empty())
+          shapes.push_back({&part, moved.data(), part.positions.size(), p.indices.data.data(),
+                            static_cast<uint32_t>(p.indices.size() / 3), p.material});
+    }
+  };
+
+  constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
+  std::vector<std::pair<uint32_t, uint32_t>> sharedShapes(scene.meshes.size(), {kNone, 0});
+  placements.reserve(scene.instances.size());
+  for (const Instance& instance : scene.instances) {
+    const auto m = static_cast<size_t>(instance.mesh);
+    const bool flat = uses[m] == 1;
+    auto& [first, count] = sharedShapes[m];
+    if (flat || first == kNone) {
+      first = static_cast<uint32_t>(shapes.size());
+      addShapes(scene.meshes[m], flat ? &instance.toWorld : nullptr);
+      count = static_cast<uint32_t>(shapes.size()) - first;
+    }
+    if (count == 0) continue;
+    placements.push_back({instance.toWorld, instance.mesh, first, count, flat, instance.visibility, 0, &instance.name});
+    for (uint32_t s = first; s < first + count; ++s) triangles += shapes[s].triangles;
+  }
+
+  // Bounds: of the vertices in use as placed (corners of the mesh's box for shared meshes).
+  const float inf = std::numeric_limits<float>::infinity();
+  lower = {inf, inf, inf}, upper = {-inf, -inf, -inf};
+  const auto grow = [](Vec3f& lo, Vec3f& hi, Vec3f p) {
+    lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
+    hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
+  };
+  std::vector<std::pair<Vec3f, Vec3f>> boxes(shapes.size(), {lower, upper});
+  tbb::parallel_for(size_t{0}, shapes.size(), [&](size_t s) {
+    auto& [lo, hi] = boxes[s];
+    const Shape& shape = shapes[s];
+    for (size_t i = 0; i < size_t{shape.triangles} * 3; ++i) grow(lo, hi, shape.positions[shape.indices[i]]);
+  });
+  for (const Placement& p : placements)
+    for (uint32_t s = p.firstShape; s < p.firstShape + p.shapes; ++s)
+      for (int k = 0; k < 8; ++k) {
+        const auto& [lo, hi] = boxes[s];
+        const Vec3f c{(k & 1) != 0 ? hi.x : lo.x, (k & 2) != 0 ? hi.y : lo.y, (k & 4) != 0 ? hi.z : lo.z};
+        grow(lower, upper, p.flat ? c : p.toWorld.point(c));
+      }
+  if (placements.empty()) lower = upper = {0, 0, 0};
+  if (!isFinite(lower) || !isFinite(upper))
+    throw Error(ExitCode::kScene, scene.path + ": an object's transform moves vertices beyond the range of numbers",
+                "look for objects with extreme scales or positions");
+}
+
+}  // namespace wardmis

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a scene needs of the renderer, as a mask that every object answers for; and what is left out, in words.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "world/emitters.h"
+
+namespace wardmis {
+
+// Bits that select the kernel (compiled in or not) ...
+enum Needs : uint32_t {
+  kNeedsDiffuse = 1,
+  kNeedsSpecular = 2,
+  kNeedsBounces = 4,  // more than direct light
+  kKernelNeeds = 7,
+  kNeedsTextures = 8,  // a branch that is always taken alike costs nothing: no kernel of its own
+  // ... and bits that decide what is set up, sampled and written
+  kNeedsLightSampling = 16,  // something emits that is worth aiming at
+  kNeedsAllocation = 32,     // techniques that share an integral: there is something to allocate
+  kNeedsEnvironment = 64,
+  kNeedsLens = 128,
+  kNeedsTangents = 256,
+};
+
+uint32_t needs(const Material& material);
+uint32_t needs(const Light& light);
+uint32_t needs(const Camera& camera);
+uint32_t needs(const World& world);
+
+// All of the scene's needs: of the materials that are placed, of the emitters, the camera and the world.
+// joint: diffuse and specular are one integral, so that their techniques share it even without lights to aim at.
+uint32_t needs(const Scene& scene, const Geometry& geometry, const Emitters& emitters, bool joint);
+
+// What a render with these needs leaves out, and why.
+std::vector<std::string> leftOut(const Scene& scene, uint32_t needs, const Emitters& emitters);
+
+// Objects and their emissive triangles are listed one by one, so that instances multiply what a small file holds:
+// throws Error(kMemory) where the list would not fit. Before anything is built.
+void requireMemoryFor(const Scene& scene);
+
+// "diffuse, specular, bounces": for the log.
+std::string describe(uint32_t needs);
+
+}  // namespace wardmis
