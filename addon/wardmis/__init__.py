@@ -24,6 +24,7 @@ from . import (  # noqa: E402
     rendering,
     scripting,
     support,
+    temporary,
     warning_panels,
     warnings,
 )
@@ -33,6 +34,7 @@ from .operators import export_scene  # noqa: E402
 __all__ = ["compare", "export_scene", "register", "unregister"]
 
 _PARTS = (
+    temporary,
     rendering,
     warnings,
     preferences,

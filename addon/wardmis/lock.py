@@ -15,23 +15,27 @@ except ImportError:  # Windows has no such locks for folders
 
 
 @contextlib.contextmanager
-def alone(folder: Path) -> Iterator[None]:
-    """Raises RuntimeError where another process is in here for the same folder. The lock ends with its process, however that ends."""
+def alone(folder: Path) -> Iterator[bool]:
+    """Raises RuntimeError where another process is in here for the same folder. The lock ends with its process, however that ends.
+
+    Gives whether there is a lock: without one, nobody is known to be away.
+    """
     if fcntl is None:
-        yield
+        yield False
         return
-    descriptor = None
+    descriptor, locked = None, False
     try:
         try:
             descriptor = os.open(folder, os.O_RDONLY)
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            locked = True
         except BlockingIOError as error:
             raise RuntimeError(
                 f"WardMIS: another process is rendering into {folder}; wait for it, or choose another output folder"
             ) from error
         except OSError:
             pass  # there are none here
-        yield
+        yield locked
     finally:
         if descriptor is not None:
             os.close(descriptor)

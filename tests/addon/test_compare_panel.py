@@ -19,7 +19,7 @@ import numpy as np
 import wardmis
 from comparison_support import SMALL, ComparisonTest
 from support import ADDON
-from wardmis import compat, rendering, scripting, second_blender, warnings
+from wardmis import compat, rendering, scripting, second_blender, temporary, warnings
 from wardmis import layout as panel_layout
 from wardmis.comparison import colours, images, job, operators, panels, plot, properties
 from wardmis.comparison.command_line import progress_text
@@ -102,7 +102,7 @@ class Background(PanelTest):
         manifest = folder / "cycles" / "manifest.json"
         arguments = self.calls()[-1]
         self.assertEqual(arguments[arguments.index("--external") + 1], str(manifest))
-        self.assertFalse((Path(bpy.app.tempdir) / "wardmis-comparison" / "scene.blend").exists())
+        self.assertFalse((temporary.kept("comparison") / "scene.blend").exists())
         # the scene is the user's, and has not been rendered by this Blender
         self.assertEqual(self.scene.render.engine, "WARDMIS")
 
@@ -209,14 +209,28 @@ class Background(PanelTest):
     def test_another_file_ends_it(self):
         with mock.patch.dict(os.environ, {"WARDMIS_FAKE": "slow"}):
             bpy.ops.wardmis.compare()
-        process = job.current()._process
+        process, folder = job.current()._process, job.current().folder
         self.assertTrue(process.running())
-        for handler in bpy.app.handlers.load_pre:  # loading one would take this test's scene away
-            if handler.__module__.startswith("wardmis."):
-                handler()
+
+        def load() -> list[str]:
+            """Loading a file would take this test's scene away."""
+            for handler in bpy.app.handlers.load_pre:
+                if handler.__module__.startswith("wardmis."):
+                    handler()
+            layout = Layout()
+            with mock.patch.object(panels, "draw_text", lambda layout, text, *_: layout.label(text)):
+                panels.draw_progress(layout, self.scene)
+            return [label for label in layout.labels if label.startswith("Opening")]
+
+        said = load()
         self.assertFalse(process.running())
-        self.assertIsNone(job.current())
+        self.assertFalse(job.running())
         self.assertIsNone(properties.report())
+        self.assertEqual(len(said), 1)  # in the new file, though it has compared nothing
+        self.assertIn(str(folder), said[0])
+        self.assertTrue((folder / "scene.glb").exists())
+        self.assertEqual(load(), [])  # and not in the one after it
+        self.assertEqual(self.compare(), folder)
 
     def test_whoever_opens_another_file_is_warned(self):
         from wardmis.comparison import leaving
@@ -234,8 +248,12 @@ class Background(PanelTest):
         with mock.patch.dict(os.environ, {"WARDMIS_FAKE": "slow"}):
             bpy.ops.wardmis.compare()
         self.assertEqual((menu(), panel.poll(context)), ([leaving.TEXT], True))
+        status = Layout()
+        leaving._draw_status(types.SimpleNamespace(layout=status), None)
+        self.assertEqual([label.strip() for label in status.labels], [leaving.TEXT])
         for name in leaving.MENUS:
             self.assertIn(leaving._draw, getattr(bpy.types, name)._dyn_ui_initialize())
+        self.assertIn(leaving._draw_status, bpy.types.STATUSBAR_HT_header._dyn_ui_initialize())
 
     def test_unregistering_ends_it(self):
         with mock.patch.dict(os.environ, {"WARDMIS_FAKE": "slow"}):
@@ -307,7 +325,7 @@ class SecondBlender(PanelTest):
         self.assertEqual((done.failure, done.folder.parent), ("", self.folder))
         arguments = self.calls()[-1]
         self.assertEqual(arguments[arguments.index("--seeds") + 1], "2")
-        self.assertEqual(list((Path(bpy.app.tempdir) / "wardmis-comparison").iterdir()), [])
+        self.assertEqual(list(temporary.kept("comparison").iterdir()), [])
 
     def test_its_warnings_are_seen_in_the_first(self):
         self.floor.is_shadow_catcher = True

@@ -14,7 +14,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from .. import compat
+from .. import compat, temporary
 from ..exr import read_pass
 from .colours import false_colour, fitting_top, relative_difference
 from .image_files import write_exr, write_png
@@ -45,13 +45,14 @@ def load(report: Report, a: str, b: str, top: float | None) -> float:
 
 def put(name: str, pixels: np.ndarray, description: str, srgb: bool = False) -> Any:
     """`pixels`, rows from the top, as the image data-block `name`: scene-linear light, or colours to be shown as they are."""
-    folder = Path(bpy.app.tempdir) / "wardmis-results"
-    path = folder / f"{name}.{'png' if srgb else 'exr'}"
+    file = f"{name}.{'png' if srgb else 'exr'}"
     try:
-        folder.mkdir(exist_ok=True)
+        path = temporary.kept("results") / file
         (write_png if srgb else write_exr)(path, pixels[..., :3])
     except OSError as error:
-        raise RuntimeError(f"WardMIS: {path} cannot be written: {error.strerror or error}; make room") from error
+        raise RuntimeError(
+            f"WardMIS: {file} cannot be written in {bpy.app.tempdir}: {error.strerror or error}; make room"
+        ) from error
     return _show(name, path, description)
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A comparison in the background of a Blender that goes on to be used: processes one after the other, looked at by a timer.
 
-There is one at a time. It ends with Blender, since the processes watch their input, and when another file is loaded; what they have
-rendered stays in the folder.
+There is one at a time. It ends with Blender, since the processes watch their input, and when another file is loaded, which no add-on
+can prevent; what they have rendered stays in the folder.
 """
 
 from __future__ import annotations
@@ -145,7 +145,7 @@ _job: Job | None = None
 
 
 def current() -> Job | None:
-    """The job that runs, or the last one of this file."""
+    """The job that runs, or the last one of this file, or that which ended when this file was opened."""
     return _job
 
 
@@ -188,9 +188,22 @@ def redraw() -> None:
                 area.tag_redraw()
 
 
+def ended_text(folder: Path | None) -> str:
+    """Of a comparison that ended with its file."""
+    text = "Opening a file has ended the comparison"
+    if folder is None:
+        return f"{text} before anything was rendered"
+    return f"{text}. What is done is kept in {folder}; with the earlier file open again, Compare goes on from there"
+
+
 @bpy.app.handlers.persistent
 def _on_load(*_: Any) -> None:
+    global _job
+    ended = _job if running() else None
     forget()
+    if ended is not None:  # that is said in the new file
+        ended.stopping, ended.text = True, ended_text(ended.folder)
+        _job = ended
 
 
 def register() -> None:

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The renders of another renderer, as `wardmis converge --external` reads them (docs/report-format.md). No bpy in here.
 
-It is written after each render, whole, under a temporary name, so that a comparison which was stopped goes on where it was.
+It is written after each render, whole, under a temporary name (one process at a time is in the folder), so that a comparison which was stopped goes on where it was.
 """
 
 from __future__ import annotations
 
 import contextlib
 import json
-import os
 from pathlib import Path
 from typing import Any
 
@@ -87,7 +86,7 @@ class Manifest:
         self.write()
 
     def write(self) -> None:
-        temporary = self.path.with_name(f".{self.path.name}.{os.getpid()}.tmp")
+        temporary = self.path.with_name(f".{self.path.name}.tmp")
         try:
             temporary.write_text(json.dumps(self.data, indent=1, ensure_ascii=False), encoding="utf-8")
             temporary.replace(self.path)

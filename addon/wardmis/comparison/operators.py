@@ -17,7 +17,7 @@ from typing import Any
 import bpy
 from bpy.props import EnumProperty, StringProperty
 
-from .. import rendering, second_blender, warnings
+from .. import rendering, second_blender, temporary, warnings
 from ..operators import export_command
 from ..preferences import renderer_path
 from ..process import RendererError
@@ -98,7 +98,13 @@ def home(scene: Any) -> Path:
 def begin(context: Any) -> job.Job:
     """Starts what exports the scene and compares it. RuntimeError with a message for the user."""
     scene = context.scene
-    staging = Path(bpy.app.tempdir) / "wardmis-comparison"
+    try:
+        staging = temporary.kept("comparison")
+    except OSError as error:
+        raise RuntimeError(
+            f"WardMIS: the folder {error.filename} cannot be made: {error.strerror}; make room, or name another folder "
+            "for temporary files in the preferences"
+        ) from error
     asked = _Asked(context, staging)
     files = second_blender.save_copy(staging) if asked.needs_copy else []
     percentage = asked.percentage

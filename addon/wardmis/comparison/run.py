@@ -12,6 +12,7 @@ from typing import Any
 
 import bpy
 
+from .. import temporary
 from ..lock import alone
 from ..operators import export_scene
 from ..preferences import renderer_path
@@ -150,11 +151,11 @@ def prepare(folder: Path, study: Study) -> Outcome:
             f"WardMIS: the folder {folder} cannot be made: {error.strerror}; choose another output folder"
         ) from error
     outcome = Outcome(folder, folder / SCENE_NAME)
-    exported = folder / f".{SCENE_NAME}.{os.getpid()}.tmp"
     try:
-        export_scene(exported)
-        rendered = any((folder / name).exists() for name in RENDERED)
-        settle(exported, outcome.scene, rendered=rendered)
+        with temporary.folder() as place:
+            export_scene(place / SCENE_NAME)
+            rendered = any((folder / name).exists() for name in RENDERED)
+            settle(place / SCENE_NAME, outcome.scene, rendered=rendered)
         interrupt.check(folder)
     except FileExistsError as error:
         raise RuntimeError(
@@ -165,8 +166,6 @@ def prepare(folder: Path, study: Study) -> Outcome:
         raise RuntimeError(
             f"WardMIS: {outcome.scene} cannot be written: {error.strerror}; make room, or choose another output folder"
         ) from error
-    finally:
-        exported.unlink(missing_ok=True)
     return outcome
 
 
