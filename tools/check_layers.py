@@ -14,7 +14,7 @@ FLOORS = [
     {"integrate"},
     {"world", "gltf"},
     {"scene"},
-    {"bsdf", "mis", "film", "oiio", "codecs"},
+    {"bsdf", "mis", "film", "program", "oiio", "codecs"},
     {"image"},
     {"math"},
 ]
