@@ -18,14 +18,13 @@ from typing import Any
 import bpy
 import numpy as np
 
-from . import compat, light_paths, rendering, temporary, warnings
+from . import compat, light_paths, rendering, sharing, temporary, warnings
 from .export import ExportCancelled, ExportError, export_depsgraph
 from .export.camera import border, full_resolution
 from .exr import read_header, read_pass
 from .passes import not_available, register_passes, wanted
 from .preferences import renderer_path
 from .process import Renderer, RendererError
-from .properties import ALLOCATIONS_WITH_PILOT
 from .seed import seed_of
 
 POLL_SECONDS = 0.1
@@ -196,17 +195,16 @@ class _Render:
         arguments += ["--passes", ",".join(wanted(self.layer)), "--progress", "json", "--watch-stdin"]
         if not bpy.app.background:  # nobody watches
             arguments += ["--preview", self.preview_path]
-        arguments += ["--allocation", settings.allocation, "--weights", settings.weights]
         arguments += ["--integrand", settings.integrand, "--integrator", settings.integrator]
         arguments += ["--sampler", settings.sampler, "--seed", seed_of(self.scene)]
-        for option, value in light_paths.options(self.scene).items():
+        for option, value in {**sharing.options(settings), **light_paths.options(self.scene)}.items():
             arguments += [f"--{option}", value]
         arguments += ["--samples-per-hit", settings.samples_per_hit]
         if settings.stop_by == "samples":
             arguments += ["--spp", settings.samples]
         else:
             arguments += ["--time", f"{settings.seconds:.6g}"]
-        if settings.allocation in ALLOCATIONS_WITH_PILOT:
+        if sharing.uses_pilot(settings):
             arguments += ["--pilot-spp", settings.pilot_samples, "--min-fraction", f"{settings.min_fraction:.6g}"]
         if render.threads_mode == "FIXED":
             arguments += ["--threads", render.threads]

@@ -11,7 +11,7 @@ import bpy
 from . import light_paths
 from .engine import WARDMIS_RenderEngine
 from .layout import draw_text
-from .properties import ALLOCATIONS_WITH_PILOT
+from .sharing import uses_pilot, yields
 
 ENGINE = WARDMIS_RenderEngine.bl_idname
 
@@ -97,10 +97,12 @@ class WARDMIS_RENDER_PT_allocation(RenderPanel, bpy.types.Panel):
         settings, column = context.scene.wardmis, self._column()
         column.prop(settings, "allocation")
         column.prop(settings, "weights")
+        if yields(settings):
+            draw_text(column, "Samples are shared equally: Automatic is for Balance weights", "INFO")
         column.prop(settings, "integrand")
         column.prop(settings, "samples_per_hit")
         column.separator()
-        pilot = settings.allocation in ALLOCATIONS_WITH_PILOT
+        pilot = uses_pilot(settings)
         _row(column, pilot).prop(settings, "pilot_samples")
         _row(column, pilot).prop(settings, "min_fraction")
 

@@ -57,11 +57,9 @@ ALLOCATIONS = (
         "auto",
         "Automatic",
         "A small pilot measures, and what it shows to be surely better is taken, its time counted; else Equal, and always "
-        "below 16 samples. Good for any scene",
+        "below 16 samples or with weights other than Balance. Good for any scene",
     ),
 )
-# They measure with a pilot; the others need none
-ALLOCATIONS_WITH_PILOT = {name for name, *_ in ALLOCATIONS} - {"equal", "albedo"}
 
 WEIGHTS = (
     (

@@ -44,12 +44,16 @@ std::string shellQuoted(const std::string& word) {
   return out + "'";
 }
 
-// "ALLOCATION", or "NAME:key=value,key=value".
-Configuration configuration(const std::string& spec, const SettingOptions& base) {
+// Of "ALLOCATION", or "NAME:key=value,key=value".
+SettingOptions optionsOf(const std::string& spec, const SettingOptions& base) {
   const size_t colon = spec.find(':');
+  return base.with(colon == spec.npos ? "allocation=" + spec : spec.substr(colon + 1));
+}
+
+Configuration configuration(const std::string& spec, const SettingOptions& base) {
   Configuration c;
-  c.name = spec.substr(0, colon);
-  c.settings = base.with(colon == spec.npos ? "allocation=" + spec : spec.substr(colon + 1));
+  c.name = spec.substr(0, spec.find(':'));
+  c.settings = optionsOf(spec, base).chosen();
   c.described = toJson(c.settings);
   try {
     json(c.name).dump();
@@ -85,6 +89,9 @@ int run(const Options& o, const std::string& command) {
     return 0;
   }
   for (const std::string& note : scene.notes) reporter.warn(note);
+  for (size_t i = 0; i < o.specs.size(); ++i)
+    if (const std::string why = optionsOf(o.specs[i], o.settings).yielding(); !why.empty())
+      reporter.warn(fmt::format("configuration '{}': {}", plan.configurations[i].name, why));
   json names = json::array();
   for (const Configuration& c : plan.configurations) names.push_back(c.name);
   reporter.event({{"event", "start"},

@@ -162,6 +162,7 @@ int run(Options& o) {
   Scene scene = readGlb(o.scene, o.noDefaults);
   if (!o.resolution.empty()) useResolution(scene, o.resolution);
   if (!o.noDefaults) addDefaults(scene);
+  if (const std::string why = o.settings.yielding(); !why.empty()) scene.notes.push_back(why);
   if (o.filter != "scene") scene.film.filter = pick(o.filter, kFilters);
   const double readSeconds = since(start);
 

@@ -43,7 +43,7 @@ Fractions costOf(const std::string& text) {
 void SettingOptions::add(CLI::App& app) {
   app.add_option("--allocation", allocation_, "how the samples of a hit are shared")
       ->check(among(kAllocations))
-      ->capture_default_str();
+      ->default_str(std::string(name(RenderSettings{}.allocation)));
   app.add_option("--weights", weights_, "MIS weights; auto: what the paper pairs with the allocation")
       ->check(among(kWeights, {"auto"}))
       ->capture_default_str();
@@ -88,7 +88,10 @@ void SettingOptions::add(CLI::App& app) {
 
 RenderSettings SettingOptions::chosen() const {
   RenderSettings s = numbers_;
-  s.allocation = pick(allocation_, kAllocations);
+  if (!allocation_.empty())
+    s.allocation = pick(allocation_, kAllocations);
+  else if (!yielding().empty())
+    s.allocation = Allocation::kEqual;
   if (weights_ != "auto") s.weights = pick(weights_, kWeights);
   s.integrand = pick(integrand_, kIntegrands);
   s.integrator = pick(integrator_, kIntegrators);
@@ -100,11 +103,17 @@ RenderSettings SettingOptions::chosen() const {
     throw Error(ExitCode::kUsage,
                 "--allocation auto with --weights nonbalance: auto predicts the variance for balance weights, and "
                 "would do harm with these",
-                "leave --weights to auto, or take --allocation standard-deviation, the best for nonbalance weights");
+                "leave one of them out, or take --allocation standard-deviation, the best for nonbalance weights");
   return s;
 }
 
-RenderSettings SettingOptions::with(const std::string& changes) const {
+std::string SettingOptions::yielding() const {
+  if (!allocation_.empty() || weights_ == "auto" || weights_ == name(Weights::kBalance)) return {};
+  return fmt::format("samples are shared equally: the default allocation, auto, is for balance weights, not for {}",
+                     weights_);
+}
+
+SettingOptions SettingOptions::with(const std::string& changes) const {
   SettingOptions changed = *this;
   CLI::App app;
   changed.add(app);
@@ -125,7 +134,7 @@ RenderSettings SettingOptions::with(const std::string& changes) const {
       keys += (keys.empty() ? "" : ", ") + option->get_name().substr(2);
     throw Error(ExitCode::kUsage, fmt::format("'{}': {}", changes, e.what()), "give key=value with keys of: " + keys);
   }
-  return changed.chosen();
+  return changed;
 }
 
 nlohmann::json toJson(const RenderSettings& s) {

@@ -31,12 +31,14 @@ class SettingOptions {
  public:
   void add(CLI::App& app);        // the options write to this object, which must not move from then on
   RenderSettings chosen() const;  // once parsed. Throws Error(kUsage)
+  // Why chosen() shares samples equally although auto is the default; empty: it does not.
+  std::string yielding() const;
   // The same with "key=value,key=value" (the options' names without dashes) on top. Throws Error(kUsage).
-  RenderSettings with(const std::string& changes) const;
+  SettingOptions with(const std::string& changes) const;
 
  private:
   RenderSettings numbers_;
-  std::string allocation_{name(RenderSettings{}.allocation)},
+  std::string allocation_,  // empty: not given
       weights_ = "auto", integrand_ = "split", integrator_ = "path", sampler_ = "sobol", kernel_ = "auto",
       cost_ = "rays";
 };

@@ -84,6 +84,12 @@ class Comparing(ComparisonTest):
         self.assertNotIn("--external", arguments)
         self.assertFalse((self.folder / "cycles").exists())
 
+    def test_the_scenes_default_allocation_yields_to_its_weights(self):
+        self.scene.wardmis.weights = "nonbalance"
+        wardmis.compare(self.folder, configurations=["equal", "scene"], cycles=False, **SMALL)
+        own = next(word for word in self.calls()[-1] if word.startswith("scene:"))
+        self.assertTrue(own.startswith("scene:weights=nonbalance,"), own)
+
     def test_budget_is_shared_with_cycles(self):
         """WardMIS' half decides on the samples, and Cycles has as many where they fit into its own."""
         wardmis.compare(self.folder, budget_seconds=60, **SMALL)

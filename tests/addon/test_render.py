@@ -212,6 +212,15 @@ class Arguments(RenderTest):
             self.assertEqual(arguments[arguments.index(option) + 1], setting, option)
         self.assertNotIn("--time", arguments)
 
+    def test_the_default_allocation_yields_to_other_weights(self):
+        """By not being named: the command refuses it."""
+        for weights, allocation in (("balance", ["--allocation", "auto"]), ("nonbalance", []), ("power", [])):
+            run = self.run_blender(f"scene.wardmis.weights = {weights!r}")
+            words = run.calls[-1]["arguments"]
+            self.assertEqual(words[words.index("--weights") + 1], weights)
+            self.assertEqual([word for word in words if word in ("--allocation", "auto")], allocation, weights)
+            self.assertEqual("--pilot-spp" in words, weights == "balance")
+
     def test_stop_by_seconds_and_blenders_threads(self):
         run = self.run_blender(
             "s = scene.wardmis\ns.stop_by, s.seconds = 'seconds', 2.5\nscene.render.threads_mode = 'FIXED'\nscene.render.threads = 3\n"

@@ -91,6 +91,25 @@ class Usage(CommandTest):
                 self.refused(2, *arguments, says=[says])
         self.assertFalse(self.out.exists())
 
+    def test_the_default_allocation_yields_to_other_weights(self):
+        """It is for balance weights; named, it stays, or is refused (above)."""
+        stats = self.folder / "stats.json"
+        for options, allocation, says in (
+            ((), "auto", ""),
+            (("--weights", "balance"), "auto", ""),
+            (("--weights", "nonbalance"), "equal", "shared equally: the default allocation, auto, is for balance weights, not for nonbalance"),
+            (("--weights", "power"), "equal", "not for power"),
+            (("--allocation", "auto", "--weights", "power"), "auto", ""),
+            (("--allocation", "variance", "--weights", "power"), "variance", ""),
+        ):  # fmt: skip
+            with self.subTest(options):
+                done = self.render("--spp", 1, "--stats", stats, *options)
+                said = json.loads(stats.read_text())
+                self.assertEqual(said["settings"]["allocation"], allocation)
+                for text in (done.stderr, " ".join(said["notes"])):
+                    self.assertIn(says, text)
+                    self.assertEqual("shared equally" in text, says != "")
+
 
 class Files(CommandTest):
     def test_scene_that_is_missing(self):

@@ -335,6 +335,12 @@ class Converge(CommandTest):
         self.assertEqual(errors, sorted(errors, reverse=True))
         self.assertIn("only 3 seeds", " ".join(report["finding"]))
 
+    def test_the_default_allocation_yields_to_other_weights(self):
+        done, report = self.quick("-c", "other:weights=nonbalance")
+        self.assertEqual(self.of(report, "other")["settings"]["allocation"], "equal")
+        self.assertEqual(done.stderr.count("shared equally"), 1)
+        self.assertIn("configuration 'other': samples are shared equally", done.stderr)
+
     def test_a_target_that_no_time_leads_to(self):
         """Above all curves, and under them."""
         _, report = self.quick("--target", 1e6)

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from .. import light_paths
+from .. import light_paths, sharing
 
 OWN = "scene"  # the configuration that the scene's own settings are
 DEFAULT_CONFIGURATIONS = ("equal", "variance", "second-moment", "auto")
@@ -109,8 +109,7 @@ def arguments(study: Study, settings: Any, outcome: Outcome) -> list[str]:
 def own_specification(settings: Any) -> str:
     """The scene's settings as a configuration."""
     pairs = {
-        "allocation": settings.allocation,
-        "weights": settings.weights,
+        **sharing.options(settings),
         "integrand": settings.integrand,
         "integrator": settings.integrator,
         "sampler": settings.sampler,

@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Who gets how many samples, and how they are weighted, as the scene's settings say it and as the command hears it. No bpy in here."""
+
+from __future__ import annotations
+
+from typing import Any
+
+WITHOUT_PILOT = {"equal", "albedo"}  # the other allocations measure first
+
+
+def yields(settings: Any) -> bool:
+    """Whether the automatic allocation, which predicts for balance weights, gives way to equal counts, as the command's default does."""
+    return settings.allocation == "auto" and settings.weights not in {"auto", "balance"}
+
+
+def uses_pilot(settings: Any) -> bool:
+    return settings.allocation not in WITHOUT_PILOT and not yields(settings)
+
+
+def options(settings: Any) -> dict[str, str]:
+    """Of the command, whose default yields only where it is not given."""
+    allocation = {} if yields(settings) else {"allocation": settings.allocation}
+    return {**allocation, "weights": settings.weights}
