@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What panels need and Blender's layouts have not: text over several lines, and whether there is little room."""
+"""What panels need and Blender's layouts have not: text over several lines, whether there is little room, and being drawn again."""
 
 from __future__ import annotations
 
@@ -10,11 +10,26 @@ import bpy
 TEXT_WIDTH = 7  # pixels of a letter, about, at a scale of the interface of 1
 ICON_LETTERS = 4  # whose place an icon takes
 NARROW = 320  # pixels, at such a scale: a sidebar as it opens; names beside their fields, and two columns, are cut off in less
+WITH_PANELS = {"PROPERTIES", "IMAGE_EDITOR"}
 
 
 def is_narrow() -> bool:
     region = bpy.context.region
     return bool(region) and region.width < NARROW * bpy.context.preferences.system.ui_scale
+
+
+def redraw_status_bars() -> None:
+    for window in bpy.context.window_manager.windows:
+        with bpy.context.temp_override(window=window):
+            window.workspace.status_text_set(None)  # which draws it anew: it is in no area that Python sees
+
+
+def redraw() -> None:
+    """The areas that have panels of ours, in all windows, soon."""
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type in WITH_PANELS:
+                area.tag_redraw()
 
 
 def draw_text(layout: Any, text: str, icon: str = "NONE") -> None:

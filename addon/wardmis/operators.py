@@ -16,6 +16,7 @@ from .engine import WARDMIS_RenderEngine, scene_export_to
 from .export import ExportError, export_depsgraph
 from .export.target import check_target
 from .process import Renderer, RendererError
+from .reporting import reported
 
 WAIT_SECONDS = 0.1
 
@@ -89,12 +90,9 @@ class WARDMIS_OT_export(bpy.types.Operator, ExportHelper):
     filename_ext = ".glb"
     filter_glob: StringProperty(default="*.glb", options={"HIDDEN"})
 
+    @reported
     def execute(self, _context: Any) -> set[str]:
-        try:
-            export_scene(self.filepath)
-        except RuntimeError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+        export_scene(self.filepath)
         self.report({"INFO"}, f"Wrote {self.filepath}")
         return {"FINISHED"}
 

@@ -213,6 +213,7 @@ _CLASSES = (
     WARDMIS_VIEWLAYER_PT_filter,
     WARDMIS_VIEWLAYER_PT_override,
 )
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(_CLASSES)
 
 
 def _compatible_panels() -> Iterator[Any]:
@@ -224,8 +225,7 @@ def _compatible_panels() -> Iterator[Any]:
 
 
 def register() -> None:
-    for cls in _CLASSES:
-        bpy.utils.register_class(cls)
+    _register_classes()
     for panel in _compatible_panels():
         panel.COMPAT_ENGINES.add(ENGINE)
 
@@ -233,5 +233,4 @@ def register() -> None:
 def unregister() -> None:
     for panel in _compatible_panels():
         panel.COMPAT_ENGINES.discard(ENGINE)
-    for cls in reversed(_CLASSES):
-        bpy.utils.unregister_class(cls)
+    _unregister_classes()

@@ -60,12 +60,4 @@ class WARDMIS_AP_preferences(bpy.types.AddonPreferences):
 
 _CLASSES = (WARDMIS_OT_test_renderer, WARDMIS_AP_preferences)
 
-
-def register() -> None:
-    for cls in _CLASSES:
-        bpy.utils.register_class(cls)
-
-
-def unregister() -> None:
-    for cls in reversed(_CLASSES):
-        bpy.utils.unregister_class(cls)
+register, unregister = bpy.utils.register_classes_factory(_CLASSES)

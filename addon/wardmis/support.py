@@ -18,6 +18,7 @@ from .comparison import job
 from .export import VERSION
 from .preferences import renderer_path
 from .process import RendererError, version
+from .reporting import reported
 
 PACKAGED = Path(__file__).parent / "documentation" / "README.html"  # tools/package.py puts it there
 CHECKOUT = Path(__file__).resolve().parents[2] / "README.md"
@@ -83,12 +84,9 @@ class WARDMIS_OT_documentation(bpy.types.Operator):
     bl_label = "Documentation"
     bl_description = "Open the manual of WardMIS in the browser; it came with the add-on and needs no network"
 
+    @reported
     def execute(self, _context: Any) -> set[str]:
-        try:
-            bpy.ops.wm.url_open(url=documentation().as_uri())
-        except RuntimeError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+        bpy.ops.wm.url_open(url=documentation().as_uri())
         return {"FINISHED"}
 
 
@@ -131,12 +129,4 @@ def _after(path: Path) -> Any:
 
 _CLASSES = (WARDMIS_OT_documentation, WARDMIS_OT_report_problem)
 
-
-def register() -> None:
-    for cls in _CLASSES:
-        bpy.utils.register_class(cls)
-
-
-def unregister() -> None:
-    for cls in reversed(_CLASSES):
-        bpy.utils.unregister_class(cls)
+register, unregister = bpy.utils.register_classes_factory(_CLASSES)

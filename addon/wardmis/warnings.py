@@ -14,7 +14,7 @@ from typing import Any
 
 import bpy
 
-SHOWN_IN = {"PROPERTIES", "IMAGE_EDITOR"}
+from . import layout
 
 
 @dataclass(frozen=True)
@@ -109,14 +109,7 @@ def _tell(text: str) -> None:
 def redraw() -> None:
     """Soon, and by Blender's main thread: renders are another."""
     if not bpy.app.background:
-        bpy.app.timers.register(_redraw, first_interval=0.0)
-
-
-def _redraw() -> None:
-    for window in bpy.context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type in SHOWN_IN:
-                area.tag_redraw()
+        bpy.app.timers.register(layout.redraw, first_interval=0.0)
 
 
 @bpy.app.handlers.persistent

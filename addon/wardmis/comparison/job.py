@@ -15,12 +15,12 @@ from typing import Any
 
 import bpy
 
+from ..layout import redraw, redraw_status_bars
 from ..process import STOPPED, Renderer, RendererError
 from .command_line import progress_text
 
 LOOK_SECONDS = 0.25
 CANCELLED = "Cancelled; what is done is kept, and Compare goes on from there"
-SHOWN_IN = {"PROPERTIES", "IMAGE_EDITOR"}
 
 
 @dataclass
@@ -178,14 +178,10 @@ def _look() -> float | None:
         return None
     _job.look()
     redraw()
-    return LOOK_SECONDS if _job.running else None
-
-
-def redraw() -> None:
-    for window in bpy.context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type in SHOWN_IN:
-                area.tag_redraw()
+    if _job.running:
+        return LOOK_SECONDS
+    redraw_status_bars()  # they say that it runs (leaving.py)
+    return None
 
 
 def ended_text(folder: Path | None) -> str:

@@ -22,6 +22,7 @@ from ..operators import export_command
 from ..preferences import renderer_path
 from ..process import RendererError
 from ..properties import ALLOCATIONS
+from ..reporting import reported
 from . import child, editors, images, job, plot, properties
 from .converge import OWN, Outcome, Study, arguments, explain_half
 from .cycles import require_cycles
@@ -228,12 +229,9 @@ class WARDMIS_OT_compare(bpy.types.Operator):
     def poll(cls, _context: Any) -> bool:
         return not job.running()
 
+    @reported
     def execute(self, context: Any) -> set[str]:
-        try:
-            begin(context)
-        except RuntimeError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+        begin(context)
         return {"FINISHED"}
 
 
@@ -269,16 +267,21 @@ class WARDMIS_OT_compare_open(bpy.types.Operator):
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
+    @reported
     def execute(self, _context: Any) -> set[str]:
-        try:
-            show(Path(bpy.path.abspath(self.directory)))
-        except RuntimeError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+        show(Path(bpy.path.abspath(self.directory)))
         return {"FINISHED"}
 
 
-class WARDMIS_OT_compare_view(bpy.types.Operator):
+class _OfResults:
+    """An operator on the results that are shown."""
+
+    @classmethod
+    def poll(cls, _context: Any) -> bool:
+        return properties.report() is not None
+
+
+class WARDMIS_OT_compare_view(_OfResults, bpy.types.Operator):
     bl_idname = "wardmis.compare_view"
     bl_label = "Show"
     bl_description = "Show this image of the comparison in the Image Editor"
@@ -292,10 +295,7 @@ class WARDMIS_OT_compare_view(bpy.types.Operator):
         default="NEXT",
     )
 
-    @classmethod
-    def poll(cls, _context: Any) -> bool:
-        return properties.report() is not None
-
+    @reported
     def execute(self, _context: Any) -> set[str]:
         chosen = properties.results()
         view = self.view
@@ -304,12 +304,8 @@ class WARDMIS_OT_compare_view(bpy.types.Operator):
             view = order[(order.index(chosen.view) + 1) % len(order)]
         if view != "PLOT":
             chosen.view = view
-        try:
-            if images.NAMES[view] not in bpy.data.images:  # removed, or undone
-                properties.reload_images()
-        except RuntimeError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+        if images.NAMES[view] not in bpy.data.images:  # removed, or undone
+            properties.reload_images()
         if images.NAMES[view] not in bpy.data.images:
             self.report({"WARNING"}, "WardMIS: there is no plot; Blender draws it in a window alone. The report has it")
             return {"CANCELLED"}
@@ -350,28 +346,20 @@ def is_used(settings: Any, report: Any) -> bool:
     )
 
 
-class WARDMIS_OT_compare_close(bpy.types.Operator):
+class WARDMIS_OT_compare_close(_OfResults, bpy.types.Operator):
     bl_idname = "wardmis.compare_close"
     bl_label = "Close Results"
     bl_description = "Remove the comparison's images from Blender. The folder keeps everything, for Open Results"
-
-    @classmethod
-    def poll(cls, _context: Any) -> bool:
-        return properties.report() is not None
 
     def execute(self, _context: Any) -> set[str]:
         properties.forget_report()
         return {"FINISHED"}
 
 
-class WARDMIS_OT_compare_report(bpy.types.Operator):
+class WARDMIS_OT_compare_report(_OfResults, bpy.types.Operator):
     bl_idname = "wardmis.compare_report"
     bl_label = "Open Report"
     bl_description = "Open the report in the browser: every figure, the curves, and the images under a magnifier"
-
-    @classmethod
-    def poll(cls, _context: Any) -> bool:
-        return properties.report() is not None
 
     def execute(self, _context: Any) -> set[str]:
         report = properties.report()
@@ -391,6 +379,7 @@ _CLASSES = (
     WARDMIS_OT_compare_close,
     WARDMIS_OT_compare_report,
 )
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(_CLASSES)
 _keys: list[tuple[Any, Any]] = []
 
 
@@ -404,8 +393,7 @@ def key_text() -> str:
 
 
 def register() -> None:
-    for cls in _CLASSES:
-        bpy.utils.register_class(cls)
+    _register_classes()
     configuration = bpy.context.window_manager.keyconfigs.addon
     if configuration is not None:  # there is none in the background
         keymap = configuration.keymaps.new(name="Image Generic", space_type="IMAGE_EDITOR")
@@ -416,5 +404,4 @@ def unregister() -> None:
     for keymap, item in _keys:
         keymap.keymap_items.remove(item)
     _keys.clear()
-    for cls in reversed(_CLASSES):
-        bpy.utils.unregister_class(cls)
+    _unregister_classes()

@@ -208,12 +208,4 @@ class WARDMIS_IMAGE_PT_results(bpy.types.Panel):
 
 _CLASSES = (WARDMIS_RENDER_PT_compare, WARDMIS_IMAGE_PT_compare, WARDMIS_IMAGE_PT_results)
 
-
-def register() -> None:
-    for cls in _CLASSES:
-        bpy.utils.register_class(cls)
-
-
-def unregister() -> None:
-    for cls in reversed(_CLASSES):
-        bpy.utils.unregister_class(cls)
+register, unregister = bpy.utils.register_classes_factory(_CLASSES)

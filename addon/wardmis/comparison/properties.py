@@ -236,11 +236,11 @@ def _on_load(*_: Any) -> None:
 
 
 _CLASSES = (WARDMIS_PG_comparison, WARDMIS_PG_results)
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(_CLASSES)
 
 
 def register() -> None:
-    for cls in _CLASSES:
-        bpy.utils.register_class(cls)
+    _register_classes()
     bpy.types.Scene.wardmis_comparison = PointerProperty(type=WARDMIS_PG_comparison)
     bpy.types.WindowManager.wardmis_results = PointerProperty(type=WARDMIS_PG_results)
     bpy.app.handlers.load_pre.append(_on_load)
@@ -251,5 +251,4 @@ def unregister() -> None:
     bpy.app.handlers.load_pre.remove(_on_load)
     del bpy.types.WindowManager.wardmis_results
     del bpy.types.Scene.wardmis_comparison
-    for cls in reversed(_CLASSES):
-        bpy.utils.unregister_class(cls)
+    _unregister_classes()

@@ -56,22 +56,25 @@ def of_vertices():
     parent.instance_type, parent.use_instance_vertices_rotation = "VERTS", True
 
 
-@scene
-def of_faces():
+def box_of_balls():
+    """The box that is to have a ball at each of its parts."""
     stage()
     parent = box(location=(0, 0, 0.8), scale=(0.8, 0.6, 0.8))
     child = ball(diffuse((0.6, 0.3, 0.3)), location=(0, 0, 0), radius=0.4, fineness=24)
     child.parent = parent
+    return parent
+
+
+@scene
+def of_faces():
+    parent = box_of_balls()
     parent.instance_type, parent.use_instance_faces_scale, parent.instance_faces_scale = "FACES", True, 0.5
     parent.show_instancer_for_render = True
 
 
 @scene
 def hidden_instancer():
-    stage()
-    parent = box(location=(0, 0, 0.8), scale=(0.8, 0.6, 0.8))
-    child = ball(diffuse((0.6, 0.3, 0.3)), location=(0, 0, 0), radius=0.4, fineness=24)
-    child.parent = parent
+    parent = box_of_balls()
     parent.instance_type, parent.show_instancer_for_render = "VERTS", False
 
 

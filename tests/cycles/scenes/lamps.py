@@ -47,28 +47,26 @@ def spots():
     lamp("SPOT", (1, 1, 4), 600, BLUE, spot_size=1.5, spot_blend=0.0, shadow_soft_size=0.1)
 
 
+def three_suns(*angles):
+    """Of so many radians."""
+    things()
+    for position, color, angle in zip(((-2, -3, 4), (3, -3, 3), (1, 2, 4)), (RED, GREEN, BLUE), angles):
+        lamp("SUN", position, 2, color, angle=angle)
+
+
 @scene
 def suns():
-    things()
-    lamp("SUN", (-2, -3, 4), 2, RED, angle=0)
-    lamp("SUN", (3, -3, 3), 2, GREEN, angle=0.1)
-    lamp("SUN", (1, 2, 4), 2, BLUE, angle=1.2)
+    three_suns(0, 0.1, 1.2)
 
 
 @scene
 def wide_suns():
-    things()
-    lamp("SUN", (-2, -3, 4), 2, RED, angle=math.radians(90))
-    lamp("SUN", (3, -3, 3), 2, GREEN, angle=math.radians(120))
-    lamp("SUN", (1, 2, 4), 2, BLUE, angle=math.radians(150))
+    three_suns(math.radians(90), math.radians(120), math.radians(150))
 
 
 @scene
 def widest_suns():
-    things()
-    lamp("SUN", (-2, -3, 4), 2, RED, angle=math.radians(165))
-    lamp("SUN", (3, -3, 3), 2, GREEN, angle=math.radians(170))
-    lamp("SUN", (1, 2, 4), 2, BLUE, angle=math.radians(179))
+    three_suns(math.radians(165), math.radians(170), math.radians(179))
 
 
 @scene

@@ -57,13 +57,8 @@ TEST(Furnace, GmdPatchShowsItsAlbedo) {
 
 // Irradiance at the origin of a diffuse plane of albedo 1, seen as radiance E/pi.
 double radiance(const Scene& scene, uint32_t spp = 1024) { return measure(renderScene(scene, settings(spp))).mean; }
-Scene plane() {
-  Scene scene;
-  scene.materials = {ward({1, 1, 1}, {0, 0, 0}, 0.1f, WardVariant::kWardGmd)};
-  addPlane(scene, 100, 0);
-  lookFrom(scene, 0.5f, 0.005f, 8);
-  return scene;
-}
+Scene plane() { return diffusePlane(8); }
+
 // A frame at `position` whose -z looks at the origin.
 Affine lookingAtOrigin(Vec3f position) {
   const Framef f = Framef::around(normalize(position));

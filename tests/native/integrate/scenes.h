@@ -68,6 +68,27 @@ inline void lookFrom(Scene& scene, float theta, float half, int resolution) {
   scene.film = {resolution, resolution, 0, 0, resolution, resolution, FilterType::kBox, 1, 1, false};
 }
 
+// A sky that shows `image`, equirectangular, z up.
+inline void addSky(Scene& scene, Image image) {
+  scene.images.push_back(std::move(image));
+  Texture t;
+  t.image = 0;
+  t.wrapV = Wrap::kClamp;
+  scene.textures.push_back(t);
+  scene.world.radiance = {1, 1, 1};
+  scene.world.texture = 0;
+  scene.zUp = false;  // the tests' frame is the image's
+}
+
+// A white diffuse plane, seen from half a radian off the vertical, a spot of it in all pixels.
+inline Scene diffusePlane(int resolution) {
+  Scene scene;
+  scene.materials = {ward({1, 1, 1}, {0, 0, 0}, 0.1f, WardVariant::kWardGmd)};
+  addPlane(scene, 100, 0);
+  lookFrom(scene, 0.5f, 0.005f, resolution);
+  return scene;
+}
+
 // The sky L = R max(0, z) as an equirectangular image, z up.
 inline void addCosineSky(Scene& scene, int height = 256) {
   Image image;
@@ -76,14 +97,7 @@ inline void addCosineSky(Scene& scene, int height = 256) {
     const float v = (static_cast<float>(y) + 0.5f) / static_cast<float>(height);
     for (int i = 0; i < 12; ++i) image.floats.push_back(std::max(0.0f, -std::cos(kPi<float> * v)));
   }
-  scene.images.push_back(image);
-  Texture t;
-  t.image = 0;
-  t.wrapV = Wrap::kClamp;
-  scene.textures.push_back(t);
-  scene.world.radiance = {1, 1, 1};
-  scene.world.texture = 0;
-  scene.zUp = false;  // the tests' frame is the image's
+  addSky(scene, std::move(image));
 }
 
 struct Measured {

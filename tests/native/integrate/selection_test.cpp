@@ -19,14 +19,6 @@ using Quadrature = boost::math::quadrature::gauss_kronrod<double, 61>;
 
 constexpr double kPid = kPi<double>;
 
-Scene plane() {
-  Scene scene;
-  scene.materials = {ward({1, 1, 1}, {0, 0, 0}, 0.1f, WardVariant::kWardGmd)};
-  addPlane(scene, 100, 0);
-  lookFrom(scene, 0.5f, 0.005f, 16);
-  return scene;
-}
-
 Measured radiance(const Scene& scene, SamplerType sampler, Weights weights, uint32_t spp) {
   RenderSettings s;
   s.spp = spp;
@@ -49,14 +41,7 @@ void addSky(Scene& scene, int width, int height, double v0) {
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
       image.floats.push_back(static_cast<float>(skyAt((x + 0.5) / width, (y + 0.5) / height, v0)));
-  scene.images.push_back(std::move(image));
-  Texture t;
-  t.image = 0;
-  t.wrapV = Wrap::kClamp;
-  scene.textures.push_back(t);
-  scene.world.radiance = {1, 1, 1};
-  scene.world.texture = 0;
-  scene.zUp = false;  // the tests' frame is the image's
+  test::addSky(scene, std::move(image));
 }
 
 // Of a horizontal plane: integral of L cos over the upper half, v = 1 straight up, a full turn in u.
@@ -108,7 +93,7 @@ TEST(Selection, SkiesOfAnySizeGiveTheirIrradiance) {
 }
 
 TEST(Selection, RendersGiveASkysIrradiance) {
-  Scene scene = plane();
+  Scene scene = diffusePlane(16);
   addSky(scene, 2048, 1024, 0.8);
   const double want = irradiance(0.8) / kPid;
   for (Weights weights : {Weights::kBalance, Weights::kMaximum}) {
@@ -132,7 +117,7 @@ TEST(Selection, SpotsAtTheZenithKeepTheirLight) {
 TEST(Selection, AMillionTrianglesGiveTheirIrradiance) {
   constexpr int kColumns = 1000, kRows = 500, kStrengths = 8;
   constexpr float kHeight = 1.5f;
-  Scene scene = plane();
+  Scene scene = diffusePlane(16);
   scene.camera->toWorld.t = scene.camera->toWorld.z * 1.2f;  // below the mesh
   for (int s = 0; s < kStrengths; ++s) {
     Material m;
@@ -181,7 +166,7 @@ TEST(Selection, AMillionTrianglesGiveTheirIrradiance) {
 // light must not. (1000^2 texels on two triangles; the spot lies off every grid point.)
 TEST(Selection, ATexelThatShinesIsAimedAt) {
   constexpr int kSide = 1000;
-  Scene scene = plane();
+  Scene scene = diffusePlane(16);
   scene.camera->toWorld.t = scene.camera->toWorld.z * 1.2f;
   Image image;
   image.width = image.height = kSide, image.channels = 1;
@@ -215,7 +200,7 @@ TEST(Selection, ATexelThatShinesIsAimedAt) {
 
 // The same sky looked up after a stretched and mirrored frame: against a quadrature of the directions.
 TEST(Selection, AStretchedSkyKeepsItsLight) {
-  Scene scene = plane();
+  Scene scene = diffusePlane(16);
   addSky(scene, 512, 256, 0.75);
   const float matrix[9] = {0.6f, 0.3f, 0, -0.5f, 1.9f, 0.2f, 0.1f, 0, -1.2f};
   std::copy_n(matrix, 9, scene.world.matrix);
