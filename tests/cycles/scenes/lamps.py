@@ -103,11 +103,14 @@ def sheared_parent():
 
 
 def sheared_lamps():
-    """The rectangle looks straight down, so that its axes stay orthogonal: Cycles' own picture of another depends on how it samples."""
+    """The rectangle looks straight down, so that its axes stay orthogonal: Cycles' own picture of another depends on how it samples.
+
+    So does, in later Blenders, that of an ellipse with a spread, of which only a part is sampled for each point, by axes taken for orthogonal.
+    """
     return [
         lamp("SPOT", (-2, -1, 4), 600, RED, spot_size=0.7, spot_blend=0.3, shadow_soft_size=0.1),
-        lamp("AREA", (3, -1, 3), 100, GREEN, (3, -1, 0), shape="RECTANGLE", size=2, size_y=0.7),
-        lamp("AREA", (0, 1, 3.5), 100, BLUE, turned=0.6, shape="ELLIPSE", size=0.7, size_y=1.5, spread=1.5),
+        lamp("AREA", (3, -1, 3), 100, GREEN, (3, -1, 0), shape="RECTANGLE", size=2, size_y=0.7, spread=2.5),
+        lamp("AREA", (0, 1, 3.5), 100, BLUE, turned=0.6, shape="ELLIPSE", size=0.7, size_y=1.5),
     ]
 
 
