@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `./dev bench`: how many million evaluations (f and pdf) and samples of Ward a core does in a second, as a table.
+// `./dev bench`: how many million evaluations (f and pdf) and samples of Ward a core does in a second, and what a look
+// at each pattern takes, as tables.
 #include <fmt/format.h>
 
 #include "loops.h"
+#include "pattern/bench_patterns.h"
 
 int main() {
   using namespace wardmis;
@@ -19,4 +21,5 @@ int main() {
     if (l.here) row(l.name, l.evaluate, l.sample);
   const auto [e] = bestSeconds(20000, [&] { d.evaluate(wardBatch); });
   fmt::print("| the renderer's batch here ({}) | {:.0f} | |\n", clonedFor(), rate(e));
+  benchPatterns();
 }
