@@ -17,7 +17,8 @@ constexpr float gradient(uint32_t hash, const Point<D>& f) {
     return signedBy(0, low ? f[0] : f[1]) + signedBy(1, 2 * (low ? f[1] : f[0]));
   } else if constexpr (D == 3) {
     const uint32_t h = hash & 15;
-    const float other = (h == 12) | (h == 14) ? f[0] : f[2];
+    const bool edge = (h == 12) | (h == 14);  // the twelve of the cube, four of them twice
+    const float other = edge ? f[0] : f[2];
     return signedBy(0, h < 8 ? f[0] : f[1]) + signedBy(1, h < 4 ? f[1] : other);
   } else {
     const uint32_t h = hash & 31;
