@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -11,6 +12,21 @@
 #include "world/needs.h"
 
 namespace wardmis {
+namespace {
+
+// The operations that each material's program has, and how often, of those whose program has any.
+std::vector<std::pair<std::string, std::map<std::string, int>>> programsOf(const Scene& scene) {
+  std::vector<std::pair<std::string, std::map<std::string, int>>> out;
+  for (const Material& m : scene.materials) {
+    if (!m.program) continue;
+    auto& [name, operations] = out.emplace_back();
+    name = m.name.empty() ? "(without a name)" : m.name;
+    for (const Instruction& i : m.program->instructions) ++operations[std::string(info(i.operation).name)];
+  }
+  return out;
+}
+
+}  // namespace
 
 Verb addInfo(CLI::App& app) {
   struct Options {
@@ -38,6 +54,7 @@ Verb addInfo(CLI::App& app) {
     if (o->integrator == "path") n |= kNeedsBounces;
     const std::vector<std::string> left = leftOut(scene, n, emitters);
     const Film& film = scene.film;
+    const std::vector<std::pair<std::string, std::map<std::string, int>>> programs = programsOf(scene);
     if (o->json) {
       const nlohmann::json j{{"version", WARDMIS_VERSION},
                              {"scene", o->scene},
@@ -54,6 +71,7 @@ Verb addInfo(CLI::App& app) {
                                {"images", scene.images.size()},
                                {"degenerate_triangles", scene.degenerateTriangles}}},
                              {"needs", describe(n)},
+                             {"programs", programs},
                              {"left_out", left},
                              {"notes", scene.notes}};
       fmt::print("{}\n", j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
@@ -75,6 +93,12 @@ Verb addInfo(CLI::App& app) {
                : scene.world.texture >= 0 ? "image"
                                           : "constant");
     fmt::print("  needs       {}\n", describe(n));
+    for (const auto& [material, operations] : programs) {
+      std::string text;
+      for (const auto& [name, count] : operations)
+        text += (text.empty() ? "" : ", ") + name + (count > 1 ? fmt::format(" x {}", count) : "");
+      fmt::print("  program     {}: {}\n", material, text);
+    }
     for (const std::string& s : left) fmt::print("  left out    {}\n", s);
     for (const std::string& s : scene.notes) fmt::print("  note        {}\n", s);
     return 0;

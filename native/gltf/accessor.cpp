@@ -26,6 +26,8 @@ constexpr int kComponents = 0;
 template <>
 constexpr int kComponents<uint32_t> = 1;
 template <>
+constexpr int kComponents<Scalar> = 1;
+template <>
 constexpr int kComponents<Vec2f> = 2;
 template <>
 constexpr int kComponents<Vec3f> = 3;
@@ -259,6 +261,26 @@ Array<T> Accessors::read(const Json& use, size_t* mended) {
   }
   cache.emplace(i, out);
   return out;
+}
+
+FloatArray Accessors::readFloats(const Json& use, size_t* mended) {
+  const auto flat = [&]<class T>(const Array<T>& array) {
+    constexpr int n = kComponents<T>;
+    static_assert(sizeof(T) == n * sizeof(float));
+    return FloatArray{{{reinterpret_cast<const float*>(array.data.data()), n * array.size()}, array.owner}, n};
+  };
+  switch (view(use, use.index(accessors_.size(), "accessors")).components) {
+    case 1:
+      return flat(read<Scalar>(use, mended));
+    case 2:
+      return flat(read<Vec2f>(use, mended));
+    case 3:
+      return flat(read<Vec3f>(use, mended));
+    case 4:
+      return flat(read<Quaternion>(use, mended));
+    default:
+      return {};
+  }
 }
 
 template Array<Vec2f> Accessors::read(const Json&, size_t*);

@@ -12,15 +12,24 @@
 namespace wardmis {
 
 using Quaternion = std::array<float, 4>;  // x, y, z, w
+using Scalar = std::array<float, 1>;
+
+// Elements of one to four numbers, one after the other.
+struct FloatArray {
+  Array<float> data;
+  int components = 0;
+};
 
 class Accessors {
  public:
   Accessors(const Json& root, Buffers& buffers, size_t fileBytes);
 
-  // The accessor whose index stands at `use`. T: Vec2f, Vec3f, Quaternion (all elements are finite) or uint32_t.
+  // The accessor whose index stands at `use`. T: Scalar, Vec2f, Vec3f, Quaternion (all are finite) or uint32_t.
   // With `mended`, elements that are not finite become 0, and are counted.
   template <class T>
   Array<T> read(const Json& use, size_t* mended = nullptr);
+  // The same with elements of any number of components up to four; none of more: what has them is of no use here.
+  FloatArray readFloats(const Json& use, size_t* mended);
 
   // Whether it may be an attribute of this name of a mesh of so many vertices, also if nobody reads it: what an
   // exporter got wrong there it may have got wrong in the rest.
@@ -40,7 +49,7 @@ class Accessors {
   // What has been read already, by index.
   template <class T>
   using Cache = std::unordered_map<size_t, Array<T>>;
-  std::tuple<Cache<Vec2f>, Cache<Vec3f>, Cache<Quaternion>, Cache<uint32_t>> cache_;
+  std::tuple<Cache<Scalar>, Cache<Vec2f>, Cache<Vec3f>, Cache<Quaternion>, Cache<uint32_t>> cache_;
 };
 
 }  // namespace wardmis

@@ -285,7 +285,7 @@ std::string Json::path() const {
       simdjson::dom::array array;
       known = known && !element.get(array) && !array.at(step.index).get(element);
       std::string_view text;
-      if (known && !element["name"].get(text)) out += " '" + cleaned(text) + "'";
+      if (known && (!element["op"].get(text) || !element["name"].get(text))) out += " '" + cleaned(text) + "'";
     }
   }
   return out;

@@ -63,6 +63,7 @@ class Json {
   // Values. Numbers are finite in single precision.
   bool isNull() const { return element_.is_null(); }
   bool isObject() const { return element_.is_object(); }
+  bool isArray() const { return element_.is_array(); }
   std::string_view string() const;
   bool boolean() const;
   float number(float low = -FLT_MAX, float high = FLT_MAX) const;

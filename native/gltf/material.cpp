@@ -95,6 +95,8 @@ void Materials::useWorldTexture(const Json& index) {
 
 Material Materials::ward(const Json& extension) {
   Material m;
+  program_.reset();
+  if (const auto program = extension.find("program")) program_.emplace(*program, textures_.size());
   if (const auto variant = extension.find("variant")) m.variant = variant->choice(kVariants);
   readColor(extension, "diffuse", m.diffuse);
   readColor(extension, "specular", m.specular);
@@ -102,14 +104,34 @@ Material Materials::ward(const Json& extension) {
   readAlpha(extension, "alphaX", m.alphaX);
   readAlpha(extension, "alphaY", m.alphaY);
   m.rotation = extension.numberOr("rotation", 0);
+  m.index = extension.numberOr("index", 0);
+  if (const auto normal = extension.find("normal")) {
+    normal->at("result");
+    readResult(*normal, ValueKind::kVector, m.normal);
+  }
+  if (program_) {
+    std::shared_ptr<Program> program = program_->finish([&](const Json& index) { return texture(index, true); });
+    if (!program->results.empty()) m.program = std::move(program);
+  }
   return m;
+}
+
+bool Materials::readResult(const Json& input, ValueKind kind, int& result) {
+  const auto json = input.find("result");
+  if (!json) return false;
+  if (!program_) json->fail("refers to a value, but the material has no program", "export the scene again");
+  if (input.find("texture")) input.fail("has both a result and a texture", "export the scene again");
+  result = program_->use(*json, kind);
+  return true;
 }
 
 void Materials::readColor(const Json& extension, std::string_view key, ColorInput& out, bool light) {
   const auto json = extension.find(key);
   if (!json) return;
   out.value = light ? json->lightOr("value", {1, 1, 1}) : json->colorOr("value", {1, 1, 1});
-  if (isBlack(out.value)) return;  // nothing to multiply
+  const bool computed = readResult(*json, ValueKind::kVector, out.result);
+  if (isBlack(out.value)) out.result = -1;  // nothing to multiply
+  if (isBlack(out.value) || computed) return;
   if (const auto texture = json->find("texture")) out.texture = wardTexture(*texture, true);
 }
 
@@ -117,6 +139,7 @@ void Materials::readAlpha(const Json& extension, std::string_view key, ScalarInp
   const auto json = extension.find(key);
   if (!json) return;
   out.value = json->numberOr("value", 1, 0);
+  if (readResult(*json, ValueKind::kNumber, out.result)) return;
   if (const auto texture = json->find("texture"))
     out.texture = wardTexture(*texture, false);
   else
@@ -426,6 +449,15 @@ void Materials::finish(Scene& scene) {
     texture = t->second;
   };
   for (Material& m : read_.materials) {
+    if (m.program && !m.program->textures.empty()) {
+      auto program = std::make_shared<Program>(*m.program);
+      for (uint32_t& t : program->textures) {
+        int texture = static_cast<int>(t);
+        keep(texture);
+        t = static_cast<uint32_t>(texture);
+      }
+      m.program = std::move(program);
+    }
     for (ColorInput* input : {&m.diffuse, &m.specular, &m.emission}) keep(input->texture.texture);
     for (ScalarInput* input : {&m.alphaX, &m.alphaY}) {
       keep(input->texture.texture);

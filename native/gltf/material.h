@@ -8,6 +8,7 @@
 
 #include "gltf/file.h"
 #include "gltf/left_out.h"
+#include "gltf/program.h"
 #include "image/decode.h"
 #include "scene/scene.h"
 
@@ -22,6 +23,7 @@ class Materials {
   // Which TEXCOORD_n the material needs, for textures or as the direction of its anisotropy; -1: none.
   int uvSet(int material) const;
   std::string described(int material) const;  // for messages
+  const Program* program(int material) const { return read_.materials[material].program.get(); }
   // The world's texture; its index in Scene::textures is known after finish().
   void useWorldTexture(const Json& index);
 
@@ -48,6 +50,8 @@ class Materials {
   Material core(const Json& json);
   void readColor(const Json& extension, std::string_view key, ColorInput& out, bool light = false);
   void readAlpha(const Json& extension, std::string_view key, ScalarInput& out);
+  // Whether the input is a value of the program.
+  bool readResult(const Json& input, ValueKind kind, int& result);
   TextureUse wardTexture(const Json& json, bool isColor);
   std::optional<TextureUse> coreTexture(const Json& parent, std::string_view key, bool isColor);
   int texture(const Json& index, bool isColor);
@@ -61,8 +65,9 @@ class Materials {
   JsonArray materials_, textures_, samplers_, images_;
   Buffers& buffers_;
   LeftOut& leftOut_;
-  std::string user_;  // whose textures are being read, for messages
-  int set_ = -1;      // the TEXCOORD_n of the first of them
+  std::string user_;                      // whose textures are being read, for messages
+  int set_ = -1;                          // the TEXCOORD_n of the first of them
+  std::optional<ProgramReader> program_;  // of the material that is being read
 
   Scene read_;               // materials as read, with textures that finish() may combine or drop
   std::vector<int> uvSets_;  // of read_.materials: that of the textures, -1 without any

@@ -43,6 +43,44 @@ Array<uint32_t> unrolled(const Array<uint32_t>& in, Mode mode) {
   return Array<uint32_t>::of(std::move(out));
 }
 
+// The file's attributes that a program reads, in its order.
+ProgramVertices programVertices(const Json& primitive, const Json& attributes, const Program& program) {
+  const auto extension = primitive.extension("WARDMIS_scene");
+  const JsonArray sets = extension ? extension->array("uvSets") : JsonArray(primitive);
+  const auto uvs = [&](const std::string& name) {
+    if (name.empty()) return std::string("TEXCOORD_0");
+    for (size_t i = 0; i < sets.size(); i++)
+      if (sets[i].string() == name) return fmt::format("TEXCOORD_{}", i);
+    return name.starts_with("TEXCOORD_") ? name : std::string();
+  };
+  const auto exists = [&](const std::string& key) { return !key.empty() && attributes.find(key).has_value(); };
+  ProgramVertices out;
+  for (const ProgramAttribute& a : program.attributes) {
+    std::string key;
+    if (a.kind == ProgramAttribute::Kind::kUvs) {
+      key = uvs(a.name);
+    } else if (a.kind == ProgramAttribute::Kind::kNamed) {
+      key = a.name.starts_with("COLOR_") ? a.name : "_" + a.name;
+    } else {
+      key = "_TANGENT_" + a.name;
+      if (a.name.empty() || (!exists(key) && uvs(a.name) == "TEXCOORD_0")) key = "TANGENT";
+      if (!exists(key)) key = uvs(a.name);  // the triangles' own are computed from these
+    }
+    out.names.push_back(exists(key) ? key : std::string());
+  }
+  if ((program.reads & kReadsGenerated) != 0 && exists("_GENERATED")) out.generated = "_GENERATED";
+  return out;
+}
+
+// Names the accessors of all that is wanted.
+std::vector<size_t> keyOf(const ProgramVertices& wanted, const Json& attributes) {
+  std::vector<size_t> key{wanted.names.size()};
+  for (const std::string& name : wanted.names)
+    key.push_back(name.empty() ? SIZE_MAX : attributes.at(name).index(SIZE_MAX, "accessors"));
+  if (!wanted.generated.empty()) key.push_back(attributes.at(wanted.generated).index(SIZE_MAX, "accessors"));
+  return key;
+}
+
 }  // namespace
 
 Meshes::Meshes(const Json& root, Accessors& accessors, Buffers& buffers, Materials& materials, LeftOut& leftOut)
@@ -72,7 +110,7 @@ Mesh Meshes::read(const Json& json) {
   if (primitives.size() == 0) json.at("primitives").failExpected("at least one primitive");
 
   // Primitives with the same vertex arrays become one part.
-  std::map<std::tuple<size_t, size_t, size_t>, size_t> partOf;
+  std::map<std::tuple<size_t, size_t, size_t, std::vector<size_t>>, size_t> partOf;
   for (size_t i = 0; i < primitives.size(); i++) {
     const Json primitive = primitives[i];
     const auto mode = primitive.integerOr("mode", kTriangles, 0, 6);
@@ -96,9 +134,13 @@ Mesh Meshes::read(const Json& json) {
       leftOut_.add("textures and direction of anisotropy on mesh " + json.described(),
                    fmt::format("it has no {}: textures are looked up at (0, 0)", uvName));
     const auto draco = primitive.extension("KHR_draco_mesh_compression");
+    const Program* program = materials_.program(material);
+    const ProgramVertices wanted =
+        program && !draco ? programVertices(primitive, *attributes, *program) : ProgramVertices{};
     const size_t vertices = draco ? 0 : accessors_.count(*position);
     attributes->forEachMember([&](std::string_view key, const Json& use) {
       if (!draco && key != "POSITION") accessors_.checkAttribute(use, key, vertices);
+      if (key == wanted.generated || std::ranges::find(wanted.names, key) != wanted.names.end()) return;
       if (key == "COLOR_0")
         leftOut_.add("vertex colours of mesh " + json.described() + " with " + materials_.described(material),
                      "the renderer does not use them");
@@ -116,7 +158,7 @@ Mesh Meshes::read(const Json& json) {
     if (draco && (hasDraco() || !accessors_.hasData(*position))) {
       DracoPrimitive decoded = readDraco(*draco, uvName, buffers_);
       mended(decoded.mended);
-      MeshPart part{decoded.positions, decoded.normals, turned(decoded.uvs, *position), {}};
+      MeshPart part{decoded.positions, decoded.normals, turned(decoded.uvs, *position), {}, {}, {}};
       Array<uint32_t> indices = triangles(primitive, part.positions, *position, &decoded.indices);
       if (indices.empty()) continue;
       part.primitives.push_back({material, std::move(indices)});
@@ -127,7 +169,7 @@ Mesh Meshes::read(const Json& json) {
     constexpr size_t kNone = SIZE_MAX, kAny = SIZE_MAX;
     const auto key =
         std::make_tuple(position->index(kAny, "accessors"), normal ? normal->index(kAny, "accessors") : kNone,
-                        uv ? uv->index(kAny, "accessors") : kNone);
+                        uv ? uv->index(kAny, "accessors") : kNone, keyOf(wanted, *attributes));
     const auto [entry, isNewPart] = partOf.try_emplace(key, mesh.parts.size());
     if (isNewPart) {
       MeshPart part;
@@ -135,6 +177,7 @@ Mesh Meshes::read(const Json& json) {
       size_t bad = 0;
       if (normal) part.normals = accessors_.read<Vec3f>(*normal, &bad);
       if (uv) part.uvs = turned(accessors_.read<Vec2f>(*uv, &bad), *uv);
+      readProgramVertices(wanted, *attributes, part, bad);
       mended(bad);
       mesh.parts.push_back(std::move(part));
     }
@@ -155,6 +198,24 @@ Array<Vec2f> Meshes::turned(const Array<Vec2f>& file, const Json& place) {
     for (size_t k = range.begin(); k < range.end(); k++) out[k] = {file[k].x, 1 - file[k].y};
   });
   return Array<Vec2f>::of(std::move(out));
+}
+
+void Meshes::readProgramVertices(const ProgramVertices& wanted, const Json& attributes, MeshPart& part, size_t& bad) {
+  for (const std::string& name : wanted.names) {
+    VertexAttribute& out = part.attributes.emplace_back();
+    if (name.empty()) continue;
+    const Json use = attributes.at(name);
+    if (name.starts_with("TEXCOORD_")) {
+      const Array<Vec2f> uvs = turned(accessors_.read<Vec2f>(use, &bad), use);
+      out = {{{&uvs.data.data()->x, 2 * uvs.size()}, uvs.owner}, 2};
+    } else {
+      const FloatArray values = accessors_.readFloats(use, &bad);
+      if (values.components == 0) use.failExpected("elements of one to four numbers");
+      if (name.ends_with("TANGENT") && values.components != 4) use.failExpected("tangents of four numbers");
+      out = {values.data, values.components};
+    }
+  }
+  if (!wanted.generated.empty()) part.generated = accessors_.read<Vec3f>(attributes.at(wanted.generated), &bad);
 }
 
 Array<uint32_t> Meshes::triangles(const Json& primitive, const Array<Vec3f>& positions, const Json& position,

@@ -11,6 +11,12 @@
 
 namespace wardmis {
 
+// What a program reads of the vertices: names of the file's attributes in its order; empty where there is none.
+struct ProgramVertices {
+  std::vector<std::string> names;
+  std::string generated;
+};
+
 class Meshes {
  public:
   Meshes(const Json& root, Accessors& accessors, Buffers& buffers, Materials& materials, LeftOut& leftOut);
@@ -24,6 +30,7 @@ class Meshes {
   // decoded: the triangles' indices, where they do not come from an accessor.
   Array<uint32_t> triangles(const Json& primitive, const Array<Vec3f>& positions, const Json& position,
                             const Array<uint32_t>* decoded);
+  void readProgramVertices(const ProgramVertices& wanted, const Json& attributes, MeshPart& part, size_t& bad);
   Array<Vec2f> turned(const Array<Vec2f>& uvs, const Json& place);
   Array<uint32_t> withoutDegenerate(const Json& place, Array<uint32_t> indices, std::span<const Vec3f> positions);
 

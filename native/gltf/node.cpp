@@ -126,6 +126,38 @@ uint8_t visibility(const Json& node) {
   return bits;
 }
 
+// What programs read of the object; null where the node says nothing.
+std::shared_ptr<const ObjectData> objectData(const Json& node) {
+  const auto extension = node.extension(kExtension);
+  if (!extension) return nullptr;
+  auto data = std::make_shared<ObjectData>();
+  bool any = false;
+  const auto find = [&](std::string_view key) {
+    const auto json = extension->find(key);
+    any |= json.has_value();
+    return json;
+  };
+  if (const auto json = find("generated")) {
+    data->hasGenerated = true;
+    json->numbers(data->generated);
+  }
+  if (const auto json = find("color")) json->numbers(data->color);
+  if (const auto json = find("index")) data->index = json->number();
+  if (const auto json = find("random")) data->random = json->number();
+  if (const auto json = find("attributes")) {
+    json->forEachMember([&](std::string_view name, const Json& value) {
+      const JsonArray numbers = value.array();
+      if (numbers.size() < 1 || numbers.size() > 4) value.failExpected("one to four numbers");
+      ObjectData::Value v;
+      v.components = static_cast<int>(numbers.size());
+      for (size_t i = 0; i < numbers.size(); i++) v.numbers[i] = numbers[i].number();
+      data->attributes.emplace_back(name, v);
+    });
+    std::ranges::sort(data->attributes, {}, [](const auto& a) -> const std::string& { return a.first; });
+  }
+  return any ? data : nullptr;
+}
+
 // The matrices of EXT_mesh_gpu_instancing, relative to its node.
 std::vector<Affine> instanceMatrices(const Json& extension, Accessors& accessors, Buffers& buffers, LeftOut& leftOut) {
   const Json attributes = extension.at("attributes");
@@ -208,7 +240,7 @@ void readNodes(const Json& root, Accessors& accessors, Buffers& buffers, Meshes&
       if (mesh < 0)
         leftOut.add("object " + node.described(), "its mesh has no triangles");
       else {
-        Instance instance{node.name(), mesh, forest.world(i), visibility(node)};
+        Instance instance{node.name(), mesh, forest.world(i), visibility(node), objectData(node)};
         if (const auto many = node.extension("EXT_mesh_gpu_instancing")) {
           const Affine base = instance.toWorld;
           for (const Affine& matrix : instanceMatrices(*many, accessors, buffers, leftOut)) {

@@ -266,6 +266,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     ray.origin = x.leave(d);
     ray.direction = d;
     ray.kind = t == kLobe ? kSeenByGlossy : kSeenByDiffuse;
+    ray.path = x.path.scattered((t == kLobe ? kGlossyRay : kDiffuseRay) | kReflectionRay, x.rayLength);
     ++(t == kLobe ? counts.lobeRays : counts.cosineRays);
     const Hit hit = world.accel.intersect(ray);
     world.emitters.along(ray, hit.t, !hit.valid(), static_cast<int>(plan.vertex), [&](const EmitterHit& e) {

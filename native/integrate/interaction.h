@@ -6,6 +6,7 @@
 #include "scene/inputs.h"
 #include "world/accel.h"
 #include "world/needs.h"
+#include "world/shading.h"
 
 namespace wardmis {
 
@@ -18,6 +19,8 @@ struct Interaction {
   Rgb emission{0, 0, 0};
   int material = 0;
   uint32_t placement = 0;
+  PathState path;  // of the ray that came here
+  float rayLength = 0;
 
   float clearance = 0;  // bound on the rounding of `position` and of an intersection there, along the normal
 
@@ -75,6 +78,18 @@ inline float clearance(const Placement& p, const Shape& s, const uint32_t* i, Ve
   return kRoundings * dot(absolute(n), r);
 }
 
+// A shading normal that looks away from the viewer is bent until it does not (else the silhouette turns black). One
+// that looks into the surface is meant so: there is light where both it and the surface's own normal see it.
+inline Vec3f bent(Vec3f ns, Vec3f ng, Vec3f wo) {
+  constexpr float kGrazing = 1e-3f;
+  const float facing = dot(ns, wo);
+  return facing < kGrazing && dot(ns, ng) > 0 ? normalize(ns + wo * (kGrazing - facing)) : ns;
+}
+
+// The surface's inputs where the material has a program.
+void resolve(const Scene& scene, const Material& material, const ShadedPoint& point, Vec2f uv, Interaction& x,
+             Vec3f& normal);
+
 }  // namespace detail
 
 // ray: the one that hit. N: needs mask of the kernel.
@@ -102,16 +117,13 @@ Interaction interact(const Scene& scene, const Geometry& geometry, const Ray& ra
     const float l2 = dot(n, n);
     if (l2 > 0) ns = n / std::sqrt(l2);
   }
-  if (dot(ng, x.wo) < 0) ng = -ng, ns = -ns;
+  const bool turned = dot(ng, x.wo) < 0;
+  if (turned) ng = -ng, ns = -ns;
   x.geometric = ng;
   x.clearance = detail::clearance(placement, shape, i, ng);
-  if (!shape.part->normals.empty()) {
-    // A shading normal that looks away from the viewer is bent until it does not (else the silhouette turns black). One
-    // that looks into the surface is meant so: there is light where both it and the surface's own normal see it.
-    constexpr float kGrazing = 1e-3f;
-    const float facing = dot(ns, x.wo);
-    if (facing < kGrazing && dot(ns, ng) > 0) ns = normalize(ns + x.wo * (kGrazing - facing));
-  }
+  if (!shape.part->normals.empty()) ns = detail::bent(ns, ng, x.wo);
+  x.path = ray.path;
+  x.rayLength = hit.t;
 
   // UVs are in the file only where a texture is looked up (the reader leaves the others out).
   const Vec2f uv = shape.part->uvs.empty() ? Vec2f{} : detail::interpolate(shape.part->uvs, i, hit.u, hit.v);
@@ -119,14 +131,20 @@ Interaction interact(const Scene& scene, const Geometry& geometry, const Ray& ra
   const auto alpha = [&](const ScalarInput& c) {
     return c.texture.texture >= 0 ? evaluateAlpha(scene, c, uv) : c.value;
   };
-  if constexpr ((N & kNeedsDiffuse) != 0) x.surface.diffuse = color(m.diffuse);
-  if constexpr ((N & kNeedsSpecular) != 0) {
-    x.surface.specular = color(m.specular);
-    x.surface.ax = alpha(m.alphaX);
-    x.surface.ay = alpha(m.alphaY);
-    x.surface.variant = m.variant;
+  if (m.program) [[unlikely]] {
+    detail::resolve(scene, m,
+                    {placement, shape, hit.triangle, hit.u, hit.v, x.position, ng, ns, x.wo, turned, x.path, hit.t}, uv,
+                    x, ns);
+  } else {
+    if constexpr ((N & kNeedsDiffuse) != 0) x.surface.diffuse = color(m.diffuse);
+    if constexpr ((N & kNeedsSpecular) != 0) {
+      x.surface.specular = color(m.specular);
+      x.surface.ax = alpha(m.alphaX);
+      x.surface.ay = alpha(m.alphaY);
+    }
+    if (!isBlack(m.emission.value)) x.emission = color(m.emission);
   }
-  if (!isBlack(m.emission.value)) x.emission = color(m.emission);
+  if constexpr ((N & kNeedsSpecular) != 0) x.surface.variant = m.variant;
 
   if ((N & kNeedsSpecular) != 0 && x.surface.ax != x.surface.ay) {
     const Framef f = Framef::around(ns, detail::tangent(placement, shape, i, x.position));

@@ -49,7 +49,9 @@ bool negativeLight(const Scene& scene) {
   for (const Light& l : scene.lights)
     if (negative(l.emitted)) return true;
   for (const Material& m : scene.materials)
-    if (negative(m.emission.value) || (!isBlack(m.emission.value) && texels(m.emission.texture.texture))) return true;
+    if (negative(m.emission.value) || m.emission.result >= 0 ||  // what a program makes may be anything
+        (!isBlack(m.emission.value) && texels(m.emission.texture.texture)))
+      return true;
   return negative(scene.world.radiance) || (!isBlack(scene.world.radiance) && texels(scene.world.texture));
 }
 

@@ -22,8 +22,8 @@ enum class ParameterKind : uint8_t {
   kNumber,   // float in low .. high
   kChoice,   // index among `choices`
   kName,     // index into Program::attributes
-  kTexture,  // index into the scene's textures; two words: first tile, tiles (Program::tiles) where there are such
-  kTable,    // rows of `columns` numbers: offset into Program::tables, rows
+  kTexture,  // two words: index into Program::textures, 0; or the first tile in Program::tiles, and how many
+  kTable,    // two words: offset into Program::tables, rows of `columns` numbers
   kMatrix    // 12 numbers, row-major: offset into Program::tables
 };
 struct Parameter {

@@ -15,6 +15,7 @@
 #include "film/filter.h"
 #include "image/image.h"
 #include "math/vec.h"
+#include "program/program.h"
 
 namespace wardmis {
 
@@ -33,7 +34,8 @@ struct Array {
   const T& operator[](size_t i) const { return data[i]; }
 };
 
-// One material input: a constant times, optionally, a texture looked up at (a u + b v + c, d u + e v + f).
+// One material input: a constant times, optionally, a value of the material's program, or a texture looked up at (a u +
+// b v + c, d u + e v + f).
 struct TextureUse {
   int texture = -1;  // -1: none
   int channel = 0;   // for scalars
@@ -42,10 +44,12 @@ struct TextureUse {
 struct ColorInput {
   Rgb value{0, 0, 0};
   TextureUse texture;
+  int result = -1;  // index into Program::results; -1: none
 };
 struct ScalarInput {
   float value = 0;
   TextureUse texture;
+  int result = -1;
 };
 
 struct Material {
@@ -54,6 +58,9 @@ struct Material {
   ColorInput diffuse, specular, emission;  // emission: W m^-2 sr^-1, both sides
   ScalarInput alphaX{0.1f, {}}, alphaY{0.1f, {}};
   float rotation = 0;  // of the anisotropy, radians, counter-clockwise about the normal
+  int normal = -1;     // index into Program::results: the shading normal in world space; -1: the mesh's
+  float index = 0;     // for programs
+  std::shared_ptr<const Program> program;
   bool unlit = false;  // its emission stands for a colour that needs no light, and is none
 
   bool hasTextures() const {
@@ -68,11 +75,20 @@ struct Primitive {
   Array<uint32_t> indices;  // 3 per triangle, all < positions.size(); no degenerate triangles
 };
 
+// What programs read of the vertices: `components` numbers each; 0: there is nothing of the name. UVs: v = 0 at the
+// bottom. Tangents: three and the sign.
+struct VertexAttribute {
+  Array<float> data;
+  int components = 0;
+};
+
 // Vertex arrays shared by its primitives. normals and uvs are empty or as long as positions.
 struct MeshPart {
   Array<Vec3f> positions;
-  Array<Vec3f> normals;  // shading normals, unit length not guaranteed
-  Array<Vec2f> uvs;      // v = 0 at the bottom
+  Array<Vec3f> normals;                     // shading normals, unit length not guaranteed
+  Array<Vec2f> uvs;                         // v = 0 at the bottom
+  std::vector<VertexAttribute> attributes;  // in the order of the program's; those of all its materials are the same
+  Array<Vec3f> generated;                   // in the frame of the file
   std::vector<Primitive> primitives;
 };
 struct Mesh {
@@ -89,11 +105,25 @@ enum Visibility : uint8_t {
   kSeenByAll = 15
 };
 
+// What programs read of an object.
+struct ObjectData {
+  bool hasGenerated = false;
+  float generated[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  // row by row, from object space in the scene's frame
+  float color[4] = {1, 1, 1, 1};
+  float index = 0, random = 0;
+  struct Value {
+    float numbers[4] = {0, 0, 0, 0};
+    int components = 0;
+  };
+  std::vector<std::pair<std::string, Value>> attributes;  // sorted by name
+};
+
 struct Instance {
   std::string name;
   int mesh = 0;
   Affine toWorld;
   uint8_t visibility = kSeenByAll;
+  std::shared_ptr<const ObjectData> object;  // null: as it is by default
 };
 
 enum class LightType : uint8_t { kArea, kPoint, kSpot, kSun };

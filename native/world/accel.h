@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "program/context.h"
 #include "world/geometry.h"
 
 namespace wardmis {
@@ -15,6 +16,7 @@ struct Ray {
   // Not from 0: a ray that starts exactly in a surface's plane does not meet that surface.
   float tMin = 1e-15f, tMax = 3.4e38f;
   Visibility kind = kSeenByCamera;
+  PathState path;  // for programs
 };
 
 struct Hit {

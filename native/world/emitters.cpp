@@ -2,10 +2,12 @@
 #include "world/emitters.h"
 
 #include <cmath>
+#include <unordered_map>
 
 #include "math/number.h"
 #include "math/warp.h"
 #include "scene/inputs.h"
+#include "world/shading.h"
 
 namespace wardmis {
 namespace {
@@ -21,8 +23,9 @@ class TriangleLuminance {
   // Of a texture: the mean over a grid that is about as fine as the texels that the triangle covers. The grid may miss
   // what shines between its points, and a triangle that shines must be aimed at: never less than a share of the image's
   // own mean.
-  double of(const Shape& s, uint32_t triangle) {
+  double of(const Placement& p, const Shape& s, uint32_t triangle) {
     const ColorInput& e = scene_.materials[static_cast<size_t>(s.material)].emission;
+    if (e.result >= 0) return ofProgram(p, s, triangle);
     if (e.texture.texture < 0 || s.part->uvs.empty()) return double(strength(e.value));
     const uint32_t* i = s.indices + 3 * size_t{triangle};
     const Vec2f a = s.part->uvs[i[0]], b = s.part->uvs[i[1]], c = s.part->uvs[i[2]];
@@ -45,6 +48,30 @@ class TriangleLuminance {
 
  private:
   static constexpr float kMostDivisions = 16;
+
+  // Of a program: the mean over a few points, each seen from before it. What shines between them must be aimed at too:
+  // never less than a share of what the most shining point of the mesh so far has, or else of the constant factor.
+  double ofProgram(const Placement& p, const Shape& s, uint32_t triangle) {
+    constexpr float kPoints[][2] = {{1 / 3.f, 1 / 3.f}, {1 / 6.f, 1 / 6.f}, {2 / 3.f, 1 / 6.f}, {1 / 6.f, 2 / 3.f}};
+    constexpr double kLeast = 0.02;
+    const auto corner = [&](int k) {
+      const Vec3f v = s.positions[s.indices[3 * size_t{triangle} + static_cast<size_t>(k)]];
+      return p.flat ? v : p.toWorld.point(v);
+    };
+    const Vec3f a = corner(0), ab = corner(1) - a, ac = corner(2) - a, n = cross(ab, ac);
+    const float size = std::sqrt(length(n));
+    double sum = 0;
+    for (const auto& q : kPoints) {
+      const Vec3f before = a + ab * q[0] + ac * q[1] + (size > 0 ? n / size : n);
+      const double here = double(strength(emissionAt(scene_, p, s, triangle, q[0], q[1], before, 0)));
+      if (std::isfinite(here)) sum += here;
+    }
+    const double mean = sum / double(std::size(kPoints));
+    double& most = most_.try_emplace(&s, 0).first->second;
+    most = std::max(most, mean);
+    const double factor = double(strength(scene_.materials[static_cast<size_t>(s.material)].emission.value));
+    return std::max(mean, kLeast * (most > 0 ? most : factor));
+  }
 
   const Image& image(int texture) const {
     return scene_.images[static_cast<size_t>(scene_.textures[static_cast<size_t>(texture)].image)];
@@ -69,7 +96,8 @@ class TriangleLuminance {
   }
 
   const Scene& scene_;
-  std::vector<double> means_;  // luminance of each texture's image; < 0: not known yet
+  std::unordered_map<const Shape*, double> most_;  // of programs
+  std::vector<double> means_;                      // luminance of each texture's image; < 0: not known yet
 };
 
 // The rectangle seen from a point, for sampling its solid angle (Urena, Fajardo and King 2013, "An area-preserving
@@ -202,7 +230,7 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const Environment& en
       offset += shape.triangles;
       std::vector<float>& strength = ofShape[s];
       for (uint32_t t = static_cast<uint32_t>(strength.size()); t < shape.triangles; ++t)
-        strength.push_back(static_cast<float>(luminances.of(shape, t)));
+        strength.push_back(static_cast<float>(luminances.of(placement, shape, t)));
       for (uint32_t t = 0; t < shape.triangles; ++t) {
         const Vec3f a = geometry.corner(placement, shape, t, 0), b = geometry.corner(placement, shape, t, 1),
                     c = geometry.corner(placement, shape, t, 2);
@@ -321,7 +349,9 @@ LightSample Emitters::sample(Vec3f from, ChoicePoint point, int bounces) const {
     s.pdf = choice * t2 / cosArea;
     const ColorInput& emission = scene_.materials[static_cast<size_t>(shape.material)].emission;
     s.radiance = emission.value;
-    if (emission.texture.texture >= 0 && !shape.part->uvs.empty()) {
+    if (emission.result >= 0) {
+      s.radiance = emissionAt(scene_, p, shape, e.triangle, b.x, b.y, from, bounces);
+    } else if (emission.texture.texture >= 0 && !shape.part->uvs.empty()) {
       const uint32_t* i = shape.indices + 3 * size_t{e.triangle};
       const Vec2f t0 = shape.part->uvs[i[0]], t1 = shape.part->uvs[i[1]], t2uv = shape.part->uvs[i[2]];
       const float c = 1 - b.x - b.y;

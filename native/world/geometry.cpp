@@ -42,7 +42,8 @@ Geometry::Geometry(const Scene& scene) {
       count = static_cast<uint32_t>(shapes.size()) - first;
     }
     if (count == 0) continue;
-    placements.push_back({instance.toWorld, instance.mesh, first, count, flat, instance.visibility, 0, &instance.name});
+    placements.push_back({instance.toWorld, instance.mesh, first, count, flat, instance.visibility, 0, &instance.name,
+                          instance.object.get()});
     for (uint32_t s = first; s < first + count; ++s) triangles += shapes[s].triangles;
   }
 

@@ -28,6 +28,7 @@ struct Placement {
   uint8_t visibility = kSeenByAll;
   uint32_t firstEmitter = 0;  // of its emissive triangles
   const std::string* name = nullptr;
+  const ObjectData* object = nullptr;  // null: as it is by default
 };
 
 struct Geometry {

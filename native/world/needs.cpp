@@ -14,10 +14,11 @@ uint32_t needs(const Material& m) {
   if (maxComponent(m.specular.value) > 0) {
     n |= kNeedsSpecular;
     const bool anisotropic = m.alphaX.value != m.alphaY.value || m.alphaX.texture.texture != m.alphaY.texture.texture ||
-                             m.alphaX.texture.channel != m.alphaY.texture.channel;
+                             m.alphaX.texture.channel != m.alphaY.texture.channel || m.alphaX.result != m.alphaY.result;
     if (anisotropic) n |= kNeedsTangents;
   }
-  if (m.hasTextures()) n |= kNeedsTextures;
+  if (m.hasTextures() || (m.program && !m.program->textures.empty())) n |= kNeedsTextures;
+  if (m.program) n |= kNeedsPrograms;
   return n;
 }
 
@@ -46,6 +47,7 @@ std::vector<std::string> leftOut(const Scene& scene, uint32_t n, const Emitters&
   add(kNeedsDiffuse, "no diffuse colour: no cosine samples");
   add(kNeedsSpecular, "no specular colour: no lobe samples, and no pilot for them");
   add(kNeedsTextures, "no textures: no UVs read, none interpolated");
+  add(kNeedsPrograms, "no programs: nothing is computed at hits but the surfaces' own inputs");
   add(kNeedsTangents, "no anisotropic material: no tangents");
   add(kNeedsLens, "no depth of field: no lens samples");
   add(kNeedsBounces, "direct light only: no paths, no Russian roulette");
@@ -88,10 +90,9 @@ void requireMemoryFor(const Scene& scene) {
 
 std::string describe(uint32_t n) {
   constexpr std::pair<uint32_t, const char*> kNames[] = {
-      {kNeedsDiffuse, "diffuse"},         {kNeedsSpecular, "specular"},
-      {kNeedsTextures, "textures"},       {kNeedsBounces, "bounces"},
-      {kNeedsLightSampling, "lights"},    {kNeedsAllocation, "allocation"},
-      {kNeedsEnvironment, "environment"}, {kNeedsLens, "lens"},
+      {kNeedsDiffuse, "diffuse"},       {kNeedsSpecular, "specular"},       {kNeedsTextures, "textures"},
+      {kNeedsPrograms, "programs"},     {kNeedsBounces, "bounces"},         {kNeedsLightSampling, "lights"},
+      {kNeedsAllocation, "allocation"}, {kNeedsEnvironment, "environment"}, {kNeedsLens, "lens"},
       {kNeedsTangents, "tangents"}};
   std::string s;
   for (const auto& [bit, text] : kNames)

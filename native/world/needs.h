@@ -23,6 +23,7 @@ enum Needs : uint32_t {
   kNeedsEnvironment = 64,
   kNeedsLens = 128,
   kNeedsTangents = 256,
+  kNeedsPrograms = 512,  // a branch, too
 };
 
 uint32_t needs(const Material& material);

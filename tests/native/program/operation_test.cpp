@@ -2,6 +2,7 @@
 // The table of operations, and that docs/scene-format.md tells all of it.
 #include "program/operation.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -51,11 +52,10 @@ TEST(Operations, HaveTheirParametersDocumented) {
   text << file.rdbuf();
   for (const OperationInfo& o : kOperations)
     for (const Parameter& p : o.parameters) {
-      EXPECT_NE(text.str().find("`" + std::string(p.name) + "`"), std::string::npos) << o.name << ": " << p.name;
+      EXPECT_NE(text.str().find(fmt::format("`{}`", p.name)), std::string::npos) << o.name << ": " << p.name;
       for (const std::string_view choice : p.choices)
         if (!choice.empty())
-          EXPECT_NE(text.str().find("`\"" + std::string(choice) + "\"`"), std::string::npos)
-              << o.name << ": " << choice;
+          EXPECT_NE(text.str().find(fmt::format("`\"{}\"`", choice)), std::string::npos) << o.name << ": " << choice;
     }
 }
 

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs a material's program at a point of a surface.
+#pragma once
+
+#include "program/run.h"
+#include "world/geometry.h"
+
+namespace wardmis {
+
+// A point of a triangle as a ray sees it. World space; unit vectors.
+struct ShadedPoint {
+  const Placement& placement;
+  const Shape& shape;
+  uint32_t triangle;
+  float u, v;  // barycentric weights of the second and third vertex
+  Vec3f position;
+  Vec3f geometric, normal;  // on the side of wo
+  Vec3f wo;
+  bool turned;  // the triangle's own normal, by the order of its vertices as placed, looks the other way
+  PathState path;
+  float rayLength;
+};
+
+// What the program of the point's material makes there.
+void runProgram(const Scene& scene, const ShadedPoint& point, Slots& slots);
+
+// A triangle's own point, for its light: seen from `from`, where a path has come to by so many scatterings.
+Rgb emissionAt(const Scene& scene, const Placement& placement, const Shape& shape, uint32_t triangle, float u, float v,
+               Vec3f from, int bounces);
+
+// A value that an input refers to; 0 for what is not finite.
+inline float finiteOrZero(float v) { return std::isfinite(v) ? v : 0; }
+inline float numberOf(const Program& program, const Slots& slots, int result) {
+  return finiteOrZero(slots[program.results[static_cast<size_t>(result)]]);
+}
+inline Vec3f vectorOf(const Program& program, const Slots& slots, int result) {
+  const float* p = slots.data() + program.results[static_cast<size_t>(result)];
+  return {finiteOrZero(p[0]), finiteOrZero(p[1]), finiteOrZero(p[2])};
+}
+
+}  // namespace wardmis
