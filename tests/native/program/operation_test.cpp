@@ -53,9 +53,10 @@ TEST(Operations, HaveTheirParametersDocumented) {
   for (const OperationInfo& o : kOperations)
     for (const Parameter& p : o.parameters) {
       EXPECT_NE(text.str().find(fmt::format("`{}`", p.name)), std::string::npos) << o.name << ": " << p.name;
-      for (const std::string_view choice : p.choices)
-        if (!choice.empty())
-          EXPECT_NE(text.str().find(fmt::format("`\"{}\"`", choice)), std::string::npos) << o.name << ": " << choice;
+      for (const std::string_view choice : p.choices) {
+        if (choice.empty()) continue;
+        EXPECT_NE(text.str().find(fmt::format("`\"{}\"`", choice)), std::string::npos) << o.name << ": " << choice;
+      }
     }
 }
 
