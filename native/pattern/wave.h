@@ -42,8 +42,12 @@ inline float wave(const WaveSettings& s, const WaveInputs& in, Vec3f p) {
   n += in.phase;
   if (in.distortion != 0) {
     Fractal f{.version = s.version, .roughness = in.detailRoughness, .normalize = true};
-    if (s.version == Version::kBlender3) f.roughness = limit(f.roughness, 0, 1);
-    f.setDetail(limit(in.detail, 0, 15));
+    if (s.version == Version::kBlender3) {
+      f.roughness = limit(f.roughness, 0, 1);
+      f.setDetail(limit(in.detail, 0, 15));
+    } else {
+      f.setDetail(limit(in.detail, -1, 40));  // Cycles has no limits: no octaves are no number, very many take for ever
+    }
     const Vec3f d = q * in.detailScale;
     n += in.distortion * (fbm(f, Point<3>{{d.x, d.y, d.z}}) * 2 - 1);
   }

@@ -155,6 +155,46 @@ def gabor() -> list[Case]:
     return rows
 
 
+def beyond() -> list[Case]:
+    """Inputs beyond their ranges, as links may give."""
+    more: Case = {"Lacunarity": 1.1} if VERSION > 3 else {}
+    deep = {"Detail": 40, "Roughness": 1.4, "Distortion": -0.7} | more
+    rows = [
+        case("Noise", "Color", {"noise_dimensions": "2D"}, i)
+        for i in (deep, {"Detail": -2.5, "Scale": -1.3}, {"Scale": 0})
+    ]
+    plane = {"voronoi_dimensions": "2D"}
+    for feature in ("F1", "F2", "SMOOTH_F1", "DISTANCE_TO_EDGE"):
+        inputs: Case = {"Scale": -1.3, "Randomness": 1.8, "Smoothness": 3}
+        deeper: Case = {"Detail": 20, "Roughness": 2} | more if VERSION > 3 else {}
+        outputs: tuple[str | list[str], ...] = ("Color", "Position", ["Distance"])
+        for o in outputs[2:] if feature == "DISTANCE_TO_EDGE" else outputs:
+            rows.append(case("Voronoi", o, plane | {"feature": feature}, inputs | deeper))
+    rows += [case("Voronoi", o, plane, {"Scale": 0, "Randomness": -1}) for o in outputs]
+    for exponent in (0, -1, 1e-3):
+        rows.append(
+            case("Voronoi", ["Distance"], plane | {"distance": "MINKOWSKI"}, {"Scale": 1.3, "Exponent": exponent})
+        )
+    for detail, roughness in ((18.5, 0.9), (-0.4, 0.5), (-3.0, 0.5), (2.5, 1.6)):
+        rows.append(
+            case("Wave", ["Fac"], {}, {"Scale": 0.7, "Distortion": 2, "Detail": detail, "Detail Roughness": roughness})
+        )
+    rows.append(case("Magic", "Color", {"turbulence_depth": 4}, {"Scale": -0.4, "Distortion": -2}))
+    walls: Case = {"Scale": 1.7, "Mortar Size": 0.1}
+    for inputs in (
+        {"Mortar Smooth": -0.5},
+        {"Mortar Smooth": 3},
+        {"Row Height": -0.3, "Bias": 4},
+        {"Mortar Size": -1},
+    ):
+        rows.append(case("Brick", "Color", {}, walls | inputs))
+    rows.append(case("Checker", ["Fac"], {}, {"Scale": -0.7}))
+    if VERSION > 3:
+        for inputs in ({"Anisotropy": 2, "Frequency": -3}, {"Anisotropy": -1, "Frequency": 9, "Scale": -2}):
+            rows.append(case("Gabor", ["Value", "Phase", "Intensity"], {"gabor_type": "2D"}, inputs))
+    return rows
+
+
 def socket(sockets: Any, name: str) -> Any:
     """By identifier where names are given twice (Gabor's Orientation)."""
     return next((s for s in sockets if s.identifier == name), None) or sockets[name]
@@ -169,7 +209,12 @@ def material(c: Case) -> Any:
     for name, value in c["properties"].items():
         setattr(texture, name, value)
     for name, value in c["inputs"].items():
-        socket(texture.inputs, name).default_value = value
+        if isinstance(value, float | int):  # linked, as sockets limit their own value
+            number = nodes.new("ShaderNodeValue")
+            number.outputs[0].default_value = value
+            links.new(number.outputs[0], socket(texture.inputs, name))
+        else:
+            socket(texture.inputs, name).default_value = value
     for name in ("Vector", "W"):
         if name in texture.inputs:
             attribute = nodes.new("ShaderNodeAttribute")
@@ -237,7 +282,7 @@ def render(at: list[list[float]], cases: list[Case]) -> Any:
 
 def main() -> None:
     at = points()
-    cases = noise() + voronoi() + wave() + others() + (musgrave() if VERSION == 3 else gabor())
+    cases = noise() + voronoi() + wave() + others() + beyond() + (musgrave() if VERSION == 3 else gabor())
     pixels = render(at, cases)
     old = json.loads(FILE.read_text())["cases"] if FILE.exists() else []
     rows = [c for c in old if c["version"] != VERSION]

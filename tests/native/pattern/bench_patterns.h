@@ -17,10 +17,10 @@ namespace wardmis::test {
 inline void benchPatterns() {
   using namespace pattern;
   const auto row = [](const char* name, auto look) {
-    constexpr int kLooks = 4000;
+    constexpr int kLooks = 400;
     double best = 1;
     float sum = 0;
-    for (int run = 0; run < 20; run++) {
+    for (int run = 0; run < 200; run++) {
       const auto start = std::chrono::steady_clock::now();
       for (int i = 0; i < kLooks; i++) {
         const float t = static_cast<float>(i) * 0.37f;
