@@ -6,15 +6,17 @@
 
 namespace wardmis {
 
-// Directions of the samples at one hit, and what the surface says of them. Local frame; densities per solid angle.
-template <class T, int Capacity>
-struct Batch {
+// Directions of the samples at one hit, and what each lobe of the surface says of them. Local frame; densities per
+// solid angle.
+template <class T, size_t Lobes, int Capacity>
+struct LobeBatch {
   T x[Capacity], y[Capacity], z[Capacity];  // wi
-  T specular[Capacity];                     // f_s cos for rho_s = 1
-  T lobe[Capacity];                         // the lobe technique's pdf
+  T fCos[Lobes][Capacity];                  // f cos for a weight of 1
+  T pdf[Lobes][Capacity];
 
   Vec3<T> wi(int j) const { return {x[j], y[j], z[j]}; }
   void set(int j, Vec3<T> wi) { x[j] = wi.x, y[j] = wi.y, z[j] = wi.z; }
+  WardValue<T> value(size_t lobe, int j) const { return {fCos[lobe][j], pdf[lobe][j]}; }
 };
 
 // n directions, and where to put wardEvaluate() of them. The arrays do not overlap.

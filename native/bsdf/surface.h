@@ -14,6 +14,27 @@ struct Surface {
 
   bool hasDiffuse() const { return maxComponent(diffuse) > 0; }
   bool hasSpecular() const { return maxComponent(specular) > 0; }
+
+  bool reflects() const { return hasDiffuse() || hasSpecular(); }
+  Rgb albedo() const { return diffuse + specular; }
+
+  // The lobes by number: the first is Ward's.
+  bool hasLobe(size_t lobe) const { return lobe == 0 && hasSpecular(); }
+  Rgb lobeWeight(size_t) const { return specular; }
+  template <class T>
+  Vec3<T> sampleLobe(size_t, Vec3<T> wo, Vec2<T> u) const {
+    return wardSample<T>(wo, T(ax), T(ay), u);
+  }
+  // f_s cos (weight 1) and the lobe's pdf at one direction.
+  template <class T>
+  WardValue<T> evaluateLobe(size_t, Vec3<T> wi, Vec3<T> wo) const {
+    return wardEvaluate(variant, wi, wo, T(1) / T(ax), T(1) / T(ay));
+  }
+  // The same of the first n directions, however few, with the same bits.
+  template <class T, size_t Lobes, int Capacity>
+  void evaluateLobe(size_t lobe, Vec3<T> wo, LobeBatch<T, Lobes, Capacity>& b, int n) const {
+    wardBatch(variant, {n, b.x, b.y, b.z, b.fCos[lobe], b.pdf[lobe]}, wo, T(1) / T(ax), T(1) / T(ay));
+  }
   // Where the rounding of float directions shows in E, and the lobe is evaluated in double: a slope is rounded by
   // 6e-8/h_z, at grazing angles h_z is about alpha/(1 + |s|^2), near the horizon only cos(theta_o), and the narrower
   // alpha is what that is to be small against.
@@ -23,19 +44,7 @@ struct Surface {
   }
 };
 
-// f_s cos (rho_s = 1) and the lobe's pdf at one direction.
-template <class T>
-inline WardValue<T> evaluateWard(const Surface& s, Vec3<T> wi, Vec3<T> wo) {
-  return wardEvaluate(s.variant, wi, wo, T(1) / T(s.ax), T(1) / T(s.ay));
-}
-
 // Below this many directions, one at a time is faster.
 inline constexpr int kVectorised = 8;
-
-// Fills specular and lobe of the first n directions, however few, with the bits of evaluateWard().
-template <class T, int Capacity>
-inline void evaluate(const Surface& s, Vec3<T> wo, Batch<T, Capacity>& b, int n) {
-  wardBatch(s.variant, {n, b.x, b.y, b.z, b.specular, b.lobe}, wo, T(1) / T(s.ax), T(1) / T(s.ay));
-}
 
 }  // namespace wardmis

@@ -71,6 +71,12 @@ json settingsJson(const RenderSettings& s, const Scene& scene) {
 json statisticsJson(const std::string& path, const RenderSettings& settings, const Scene& scene, const Statistics& s,
                     const FilmBuffer& film, double read, double write, double total) {
   const Counts& c = s.counts;
+  json samples = json::object(), rays{{"camera", c.cameraRays}};
+  for (size_t t = 0; t < s.techniqueNames.size(); ++t) {
+    samples[s.techniqueNames[t]] = c.samples[t];
+    rays[t + 1 == s.techniqueNames.size() ? "shadow" : s.techniqueNames[t]] = c.rays[t];
+  }
+  samples["total"] = Counts::sum(c.samples), rays["total"] = c.allRays();
   double variance = 0;
   for (const Pixel& p : film.pixels) variance += static_cast<double>(luminance(film.variance(p)));
   variance /= static_cast<double>(std::max<size_t>(1, film.pixels.size()));
@@ -89,17 +95,8 @@ json statisticsJson(const std::string& path, const RenderSettings& settings, con
           {"pilot_in_image", s.allocated ? json(s.pilotKept) : json()},
           {"pixels", film.pixels.size()},
           {"camera_paths", c.cameraRays},
-          {"samples",
-           {{"lobe", c.samples[kLobe]},
-            {"cosine", c.samples[kCosine]},
-            {"light", c.samples[kLight]},
-            {"total", c.samples[0] + c.samples[1] + c.samples[2]}}},
-          {"rays",
-           {{"camera", c.cameraRays},
-            {"lobe", c.lobeRays},
-            {"cosine", c.cosineRays},
-            {"shadow", c.shadowRays},
-            {"total", c.rays()}}},
+          {"samples", std::move(samples)},
+          {"rays", std::move(rays)},
           {"counts",
            {{"nan", c.rare.nan},
             {"infinite", c.rare.infinite},
@@ -108,8 +105,8 @@ json statisticsJson(const std::string& path, const RenderSettings& settings, con
           {"needs", describe(s.needs)},
           {"kernel", describe(s.kernel)},
           {"allocated", s.allocated},
-          {"cost", s.cost.technique},
-          {"cost_of_hit", s.cost.hit},
+          {"cost", s.cost},
+          {"cost_of_hit", s.costOfHit},
           {"left_out", s.leftOut},
           {"notes", scene.notes},
           {"scene_counts",
@@ -125,12 +122,13 @@ json statisticsJson(const std::string& path, const RenderSettings& settings, con
 
 // `list` as --passes has it; empty: what a scene with `techniques` has. A pass that is named is there for every scene,
 // so that who asked for it knows what the file holds.
-std::vector<PassInfo> choosePasses(const std::string& list, TechniqueMask techniques) {
-  if (list.empty()) return passesFor(techniques);
+std::vector<PassInfo> choosePasses(const std::string& list, TechniqueMask techniques,
+                                   const std::vector<std::string>& names) {
+  if (list.empty()) return passesFor(techniques, names);
   std::vector<PassInfo> chosen;
   for (const std::string& want : CLI::detail::split(list, ',')) {
     bool known = false;
-    for (const PassInfo& p : passesFor(kAllTechniques))
+    for (const PassInfo& p : passesFor(~TechniqueMask{0}, names))
       if (p.group == want) chosen.push_back(p), known = true;
     if (!known)
       throw Error(ExitCode::kUsage, fmt::format("--passes: there is no pass '{}'", want),
@@ -149,7 +147,7 @@ int run(Options& o) {
   const auto start = Clock::now();
   RenderSettings s = o.settings.chosen();
   s.spp = o.spp, s.seconds = o.seconds, s.seed = o.seed, s.threads = o.threads;
-  choosePasses(o.passes, kAllTechniques);
+  choosePasses(o.passes, 0, {"any"});  // whether they exist
   checkDistinct({{"SCENE", o.scene}, {"--output", o.output}, {"--stats", o.stats}, {"--preview", o.preview}});
   for (const std::string* path : {&o.output, &o.stats, &o.preview})
     if (!path->empty()) checkWritable(*path);
@@ -166,14 +164,15 @@ int run(Options& o) {
   if (o.filter != "scene") scene.film.filter = pick(o.filter, kFilters);
   const double readSeconds = since(start);
 
+  Statistics st;
   const auto cancelled = [&] { return stopRequest.load() != Stop::kNo; };
   RenderObserver observer;
   observer.stop = &stopRequest;
-  observer.started = [&](const Statistics& st) {
+  observer.started = [&](const Statistics&) {
     if ((st.needs & (kNeedsEnvironment | kNeedsLightSampling)) == 0)
       scene.notes.emplace_back("nothing in the scene gives light, so that the image is black; add a light or a world");
     json passes = json::array();
-    for (const PassInfo& p : choosePasses(o.passes, st.techniques))
+    for (const PassInfo& p : choosePasses(o.passes, st.techniques, st.techniqueNames))
       passes.push_back({{"name", p.name}, {"channels", p.channels}});
     reporter.event({{"event", "start"},
                     {"version", WARDMIS_VERSION},
@@ -199,14 +198,14 @@ int run(Options& o) {
   if (!o.preview.empty())
     observer.image = [&](const FilmBuffer& film) {
       if (previewed && since(lastPreview) < o.previewInterval) return;
-      const std::vector<PassInfo> passes = choosePasses(o.passes.empty() ? "combined" : o.passes, kAllTechniques);
-      writeExr(o.preview, toPasses(film, passes, o.layer, scene.zUp), false);
+      const std::string list = o.passes.empty() ? "combined" : o.passes;
+      const std::vector<PassInfo> passes = choosePasses(list, st.techniques, st.techniqueNames);
+      writeExr(o.preview, toPasses(film, passes, st.techniqueNames, o.layer, scene.zUp), false);
       reporter.event({{"event", "preview"}, {"path", o.preview}, {"samples", film.samples}});
       lastPreview = Clock::now();
       previewed = true;
     };
 
-  Statistics st;
   const FilmBuffer film = render(scene, s, st, observer);
   reporter.clear();
 
@@ -220,7 +219,8 @@ int run(Options& o) {
   }
 
   const auto writeStart = Clock::now();
-  ExrImage image = toPasses(film, choosePasses(o.passes, st.techniques), o.layer, scene.zUp);
+  ExrImage image =
+      toPasses(film, choosePasses(o.passes, st.techniques, st.techniqueNames), st.techniqueNames, o.layer, scene.zUp);
   const json statsBefore = statisticsJson(o.scene, s, scene, st, film, readSeconds, 0, since(start));
   for (const char* key : {"version", "settings", "seconds", "samples_per_pixel", "samples", "rays", "counts", "needs",
                           "kernel", "left_out", "notes", "threads"}) {
@@ -245,7 +245,7 @@ int run(Options& o) {
       {{"event", "done"}, {"path", output}, {"seconds", since(start)}, {"samples", film.samples}, {"stats", stats}});
   if (!reporter.json())
     fmt::print("{}: {} samples per pixel, {:.2f} s (pilot {:.2f} s), {} rays{}\n", output, film.samples,
-               st.pilotSeconds + st.renderSeconds, st.pilotSeconds, st.counts.rays(),
+               st.pilotSeconds + st.renderSeconds, st.pilotSeconds, st.counts.allRays(),
                st.counts.underflows > 0
                    ? fmt::format(", {} lobe densities that underflow, as they must", st.counts.underflows)
                    : "");

@@ -26,12 +26,13 @@ constexpr std::array kIntegrands{Integrand::kSplit, Integrand::kJoint};
 constexpr std::array kIntegrators{Integrator::kDirect, Integrator::kPath};
 constexpr std::array kSamplers{SamplerType::kIndependent, SamplerType::kStratified, SamplerType::kSobol};
 
-Fractions costOf(const std::string& text) {
-  Fractions cost{};
+GivenCost costOf(const std::string& text) {
+  GivenCost cost;
+  float* const each[] = {&cost.lobe, &cost.cosine, &cost.light};
   const std::vector<std::string> parts = CLI::detail::split(text, ',');
-  bool good = parts.size() == kTechniques;
-  for (size_t t = 0; good && t < kTechniques; ++t)
-    good = CLI::detail::lexical_cast(parts[t], cost[t]) && cost[t] >= 1e-3f && cost[t] <= 1e6f;
+  bool good = parts.size() == std::size(each);
+  for (size_t i = 0; good && i < parts.size(); ++i)
+    good = CLI::detail::lexical_cast(parts[i], *each[i]) && *each[i] >= 1e-3f && *each[i] <= 1e6f;
   if (!good)
     throw Error(ExitCode::kUsage, fmt::format("--cost '{}'", text),
                 "give three numbers from 0.001 to 1e6, as in --cost 1,1,2, or 'rays' or 'measured'");
@@ -148,7 +149,7 @@ nlohmann::json toJson(const RenderSettings& s) {
           {"min_fraction", s.minFraction},
           {"cost", s.costFrom == CostFrom::kRays       ? nlohmann::json("rays")
                    : s.costFrom == CostFrom::kMeasured ? nlohmann::json("measured")
-                                                       : nlohmann::json(s.cost)},
+                                                       : nlohmann::json{s.cost.lobe, s.cost.cosine, s.cost.light}},
           {"max_depth", s.maxDepth},
           {"max_diffuse", s.maxDiffuse},
           {"max_glossy", s.maxGlossy},

@@ -16,8 +16,7 @@ struct Pixel {
   float depth = 1e10f;  // planar, of the first sample
   Vec3f normal{0, 0, 0};
   Rgb albedo{0, 0, 0};
-  uint32_t visits = 0;                   // first hits whose counts follow the pixel's fractions
-  std::array<uint32_t, 3> techniques{};  // samples that each technique took at first hits
+  uint32_t visits = 0;  // first hits whose counts follow the pixel's fractions
 
   void add(Rgb v) {
     const float c[3] = {v.x, v.y, v.z};
@@ -31,10 +30,17 @@ struct Pixel {
 struct FilmBuffer {
   int width = 0, height = 0;  // of the border; row 0 is the bottom row
   std::vector<Pixel> pixels;
-  uint32_t samples = 0;  // camera samples that every pixel has
+  size_t techniques = 0;               // that the renderer counts
+  std::vector<uint32_t> sampleCounts;  // [pixel * techniques + technique]: samples that it took at first hits
+  uint32_t samples = 0;                // camera samples that every pixel has
 
   FilmBuffer() = default;
-  FilmBuffer(int w, int h) : width(w), height(h), pixels(static_cast<size_t>(w) * static_cast<size_t>(h)) {}
+  FilmBuffer(int w, int h, size_t techniqueCount = 0)
+      : width(w),
+        height(h),
+        pixels(static_cast<size_t>(w) * static_cast<size_t>(h)),
+        techniques(techniqueCount),
+        sampleCounts(pixels.size() * techniqueCount) {}
   Pixel& at(int x, int y) {
     return pixels[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)];
   }

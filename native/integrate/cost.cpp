@@ -12,7 +12,7 @@ constexpr double kLongest = 0.5;  // seconds
 constexpr float kHeavy = 0.8f;    // share of the technique whose turn it is
 
 // The least squares solution of a x = b among those without a negative part: the best of all subsets of the unknowns,
-// which are at most four.
+// which are few.
 Eigen::VectorXd nonnegative(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
   Eigen::VectorXd best = Eigen::VectorXd::Zero(a.cols());
   double least = b.squaredNorm();
@@ -31,29 +31,30 @@ Eigen::VectorXd nonnegative(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) 
   return best;
 }
 
-}  // namespace
-
-TechniqueCost measureCost(const BuiltScene& built, const RenderSettings& settings) {
+template <size_t K>
+TechniqueCost measureWith(const BuiltScene& built, const RenderSettings& settings) {
   TechniqueCost cost;
   RenderSettings s = settings;
   s.allocation = Allocation::kEqual;
-  RenderSetup setup(built, s);
+  RenderSetup<K> setup(built, s);
   struct Turn {
-    Fractions fractions;
+    Fractions<K> fractions;
     int samples;  // per hit
   };
   // twice the samples in one: else nothing could tell what a hit costs from what all its samples cost
   const int once = std::min(s.samplesPerHit, kMaxSamplesPerHit / 2);
   std::vector<Turn> turns{{setup.input.fractions, once}, {setup.input.fractions, 2 * once}};
-  for (int t = 0; t < kTechniques; ++t) {
-    if ((setup.techniques >> t & 1u) == 0 || setup.techniques == (1u << t)) continue;
-    Fractions f{};
-    for (int k = 0; k < kTechniques; ++k) f[k] = k == t ? kHeavy : (1 - kHeavy) / 2;
-    turns.push_back({restrict(f, setup.techniques), once});
+  for (size_t t = 0; t < K; ++t) {
+    if (!has(setup.techniques, t) || setup.techniques == maskOf(t)) continue;
+    Fractions<K> f;
+    f.fill((1 - kHeavy) / (K - 1));
+    f[t] = kHeavy;
+    turns.push_back({restrict<K>(f, setup.techniques), once});
   }
 
   // A row for each turn; CPU seconds = cameraSample * paths + sum sample[i] * n_i.
-  std::vector<std::array<double, 2 + kTechniques>> rows(turns.size());
+  using Row = std::array<double, 2 + K>;
+  std::vector<Row> rows(turns.size());
   const auto pass = [&](uint32_t round, const Turn& turn) {
     setup.input.fractions = turn.fractions;
     setup.input.samplesPerHit = turn.samples;
@@ -62,12 +63,13 @@ TechniqueCost measureCost(const BuiltScene& built, const RenderSettings& setting
     tbb::enumerable_thread_specific<Counts> counts;
     std::atomic<int> done{0};
     const double before = cpuSeconds();
-    renderTiles(setup, film, 1, nullptr, [&]() -> Counts& { return counts.local(); }, done, {});
+    renderTiles<K>(setup, film, 1, nullptr, [&]() -> Counts& { return counts.local(); }, done, {});
     const double seconds = cpuSeconds() - before;
     Counts sum;
     for (const Counts& c : counts) sum += c;
-    return std::array<double, 2 + kTechniques>{seconds, double(sum.cameraRays), double(sum.samples[0]),
-                                               double(sum.samples[1]), double(sum.samples[2])};
+    Row row{seconds, double(sum.cameraRays)};
+    std::copy_n(sum.samples.begin(), K, row.begin() + 2);
+    return row;
   };
   pass(0, turns[0]);  // meets cold caches, and threads that must begin
   const double start = wallSeconds();
@@ -82,15 +84,14 @@ TechniqueCost measureCost(const BuiltScene& built, const RenderSettings& setting
       if (round == 0 || row[0] / row[1] < rows[turn][0] / rows[turn][1]) rows[turn] = row;
     }
 
-  std::vector<int> unknowns{0};  // column of each
-  for (int t = 0; t < kTechniques; ++t)
-    if ((setup.techniques >> t & 1u) != 0) unknowns.push_back(1 + t);
+  std::vector<size_t> unknowns{0};  // column of each
+  for (size_t t = 0; t < K; ++t)
+    if (has(setup.techniques, t)) unknowns.push_back(1 + t);
   Eigen::MatrixXd a(Eigen::Index(rows.size()), Eigen::Index(unknowns.size()));
   Eigen::VectorXd b(Eigen::Index(rows.size()));
   for (size_t r = 0; r < rows.size(); ++r) {
     b[Eigen::Index(r)] = rows[r][0];
-    for (size_t u = 0; u < unknowns.size(); ++u)
-      a(Eigen::Index(r), Eigen::Index(u)) = rows[r][1 + static_cast<size_t>(unknowns[u])];
+    for (size_t u = 0; u < unknowns.size(); ++u) a(Eigen::Index(r), Eigen::Index(u)) = rows[r][1 + unknowns[u]];
   }
   const Eigen::VectorXd x = nonnegative(a, b);
   double sum = 0;
@@ -100,17 +101,22 @@ TechniqueCost measureCost(const BuiltScene& built, const RenderSettings& setting
     if (unknowns[u] == 0)
       cost.cameraSample = value;
     else
-      cost.sample[static_cast<size_t>(unknowns[u] - 1)] = value;
+      cost.sample[unknowns[u] - 1] = value;
     if (unknowns[u] == 0 || !(value > 0)) continue;
     sum += value, ++found;
   }
   if (found == 0) return cost;
   const double mean = sum / found;
-  cost.perSample.hit = static_cast<float>(cost.cameraSample / (settings.samplesPerHit * mean));
-  for (size_t t = 0; t < kTechniques; ++t)  // a cost of nothing is the clock's noise
-    if ((setup.techniques >> t & 1u) != 0)
-      cost.perSample.technique[t] = static_cast<float>(std::max(cost.sample[t], 0.1 * mean) / mean);
+  cost.relativeHit = static_cast<float>(cost.cameraSample / (settings.samplesPerHit * mean));
+  for (size_t t = 0; t < K; ++t)  // a cost of nothing is the clock's noise
+    if (has(setup.techniques, t)) cost.relative[t] = static_cast<float>(std::max(cost.sample[t], 0.1 * mean) / mean);
   return cost;
+}
+
+}  // namespace
+
+TechniqueCost measureCost(const BuiltScene& built, const RenderSettings& settings) {
+  return withTechniques(built.lobes(), [&](auto k) { return measureWith<k()>(built, settings); });
 }
 
 }  // namespace wardmis

@@ -10,8 +10,19 @@ struct TechniqueCost {
   // Seconds of CPU time: of a camera sample without the samples at its hit, and of one sample of each technique with
   // all that follows from it (shadow rays, the path that goes on); 0 for techniques that the scene does not have.
   double cameraSample = 0;
-  std::array<double, kTechniques> sample{};
-  SampleCost perSample;  // relative to the mean of the techniques; 1 where nothing was measured
+  std::array<double, kMaxTechniques> sample{};
+  // Relative to the mean of the techniques; 1 where nothing was measured.
+  float relativeHit = 0;  // of a camera sample, by the samples of a hit
+  std::array<float, kMaxTechniques> relative;
+
+  TechniqueCost() { relative.fill(1); }
+  template <size_t K>
+  SampleCost<K> perSample() const {
+    SampleCost<K> cost;
+    cost.hit = relativeHit;
+    std::copy_n(relative.begin(), K, cost.technique.begin());
+    return cost;
+  }
 };
 
 // Renders camera samples, which are thrown away, with the counts moved towards each technique in turn and once doubled,

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 #include <new>
+#include <numeric>
 
 #include "integrate/interaction.h"
 #include "math/check.h"
@@ -17,20 +18,23 @@ namespace wardmis {
 
 inline constexpr int kMaxSamplesPerHit = 256;
 
-// What a render counts.
+// What a render counts, by technique.
 struct Counts {
-  std::array<uint64_t, kTechniques> samples{};    // at the first hit
-  std::array<uint64_t, kTechniques> following{};  // rays of the paths that went on from samples of each technique
-  uint64_t cameraRays = 0, lobeRays = 0, cosineRays = 0, shadowRays = 0;
-  // Directions above the surface at which the lobe's density is no normal number: e^-E is smaller than any.
+  using PerTechnique = std::array<uint64_t, kMaxTechniques>;
+  PerTechnique samples{};    // at the first hit
+  PerTechnique rays{};       // traced for samples; of the light: shadow rays
+  PerTechnique following{};  // rays of the paths that went on from samples of each technique
+  uint64_t cameraRays = 0;
+  // Directions above the surface at which a lobe's density is no normal number: e^-E is smaller than any.
   uint64_t underflows = 0;
   RareCounts rare;
 
-  uint64_t rays() const { return cameraRays + lobeRays + cosineRays + shadowRays; }
+  static uint64_t sum(const PerTechnique& c) { return std::accumulate(c.begin(), c.end(), uint64_t{0}); }
+  uint64_t allRays() const { return cameraRays + sum(rays); }
   Counts& operator+=(const Counts& b) {
-    for (int i = 0; i < kTechniques; ++i) samples[i] += b.samples[i], following[i] += b.following[i];
-    cameraRays += b.cameraRays, lobeRays += b.lobeRays, cosineRays += b.cosineRays, shadowRays += b.shadowRays;
-    underflows += b.underflows, rare += b.rare;
+    for (size_t i = 0; i < kMaxTechniques; ++i)
+      samples[i] += b.samples[i], rays[i] += b.rays[i], following[i] += b.following[i];
+    cameraRays += b.cameraRays, underflows += b.underflows, rare += b.rare;
     return *this;
   }
 };
@@ -54,31 +58,29 @@ class Scratch {
   alignas(E) std::byte storage_[sizeof(E) * static_cast<size_t>(Capacity)];
 };
 
-// Names of the random numbers that a vertex uses; the number's dimension is vertex * kPerVertex + name.
-enum Dimension : uint32_t {
-  kFilmPoint = 0,
-  kLensPoint,
-  kSampleCounts,
-  kLobePoint,
-  kCosinePoint,
-  kLightPoint,
-  kRoulette,
-  kPerVertex
+// Names of the random numbers that a vertex uses; the number's dimension is vertex * Dimensions<K>::kPerVertex + name.
+template <size_t K>
+struct Dimensions {
+  enum : uint32_t { kFilmPoint = 0, kLensPoint, kSampleCounts, kTechnique, kRoulette = kTechnique + K, kPerVertex };
 };
 
-// How far paths go, as Cycles counts: surface hits, and how often one may go on from a sample of each technique. What a
-// ray meets where that is used up still gives its own light, and reflects none.
+// Kinds of bounces, as Cycles limits them.
+enum Bounce : uint8_t { kDiffuseBounce, kGlossyBounce, kBounceKinds };
+
+// How far paths go, as Cycles counts: surface hits, and how often one may go on from a bounce of each kind. What a ray
+// meets where that is used up still gives its own light, and reflects none.
 struct PathLimits {
   int depth = 1;
-  std::array<int, kTechniques> bounces{};
+  std::array<int, kBounceKinds> bounces{};
 
-  bool bounce() const { return depth > 1 && (bounces[kLobe] > 0 || bounces[kCosine] > 0); }
+  bool bounce() const { return depth > 1 && *std::max_element(bounces.begin(), bounces.end()) > 0; }
 };
 
 // How a hit is to be sampled.
+template <size_t K>
 struct HitPlan {
-  Fractions fractions{};  // of the techniques that this hit has
-  TechniqueMask available = kAllTechniques;
+  Fractions<K> fractions{};  // of the techniques that this hit has
+  TechniqueMask available = Techniques<K>::kAll;
   int samples = 0;  // in all; at most the batch's capacity
   Integrand integrand = Integrand::kSplit;
   Weights weights = Weights::kBalance;
@@ -86,143 +88,180 @@ struct HitPlan {
   uint32_t index = 0;  // of this visit, among the pixel's
   // Index of each technique's first point here: consecutive over the pixel's visits, however many a visit takes, so
   // that the sampler's points stay evenly spread under every allocation.
-  std::array<uint32_t, kTechniques> firstPoint{};
+  std::array<uint32_t, K> firstPoint{};
 };
 
 // A ray of a surface technique that hit something: the path may go on from there.
+template <size_t K>
 struct Continuation {
   Ray ray;
   Hit hit;
   Rgb weight{0, 0, 0};  // f cos / pdf with MIS weights and counts, for light that no light sample covers
-  Technique technique = kLobe;
-  float scale = 0;  // weight / (f cos)
-  int set = 0;      // of the pilot's samples
-  Fractions p{};    // densities of the techniques
+  size_t technique = 0;
+  Bounce bounce = kGlossyBounce;
+  float scale = 0;   // weight / (f cos)
+  int set = 0;       // of the pilot's samples
+  Fractions<K> p{};  // densities of the techniques
 };
 
+template <size_t K>
 struct Continuations {
-  Scratch<Continuation, kMaxSamplesPerHit> list;
+  Scratch<Continuation<K>, kMaxSamplesPerHit> list;
   int count = 0;
 };
 
-// Moments of the two integrands (joint: of the first alone).
+// Moments of a hit's integrands (joint: the first alone).
+template <size_t K>
 struct HitMoments {
-  Moments specular, diffuse;
+  PerIntegrand<Moments<K>, K> of;
 
   HitMoments& operator+=(const HitMoments& b) {
-    specular += b.specular, diffuse += b.diffuse;
+    for (size_t i = 0; i < of.size(); ++i) of[i] += b.of[i];
     return *this;
   }
 };
 
 // Where the pilot notes what the samples of a hit bring: its moments, or, for `auto`, the sums of the candidates. Of
 // all light, also of what comes by way of other surfaces.
+template <size_t K>
 struct HitRecord {
-  HitMoments* moments = nullptr;
-  CandidateHit* candidates = nullptr;
+  HitMoments<K>* moments = nullptr;
+  CandidateHit<K>* candidates = nullptr;
 
-  // A sample's value f in one integrand (second: the diffuse one of split integrands), as for Moments::add.
-  void add(bool second, float f, const Fractions& p, const Fractions& n, TechniqueMask used, int set) {
-    if (moments != nullptr) (second ? moments->diffuse : moments->specular).add(f, p, n, used);
+  // A sample's value f in one integrand, as for Moments::add.
+  void add(size_t integrand, float f, const Fractions<K>& p, const Fractions<K>& n, TechniqueMask used, int set) {
+    if (moments != nullptr) moments->of[integrand].add(f, p, n, used);
     if (candidates != nullptr) candidates->add(f, p, n, used, set);
   }
 };
 
 // Estimates the direct light at x, in double where T is (sharp lobes). Continuations are kept only if N needs bounces.
-template <uint32_t N, class T>
-Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interaction& x, const HitPlan& plan,
-                Counts& counts, HitRecord* record, Continuations& continuations) {
+template <uint32_t N, class T, size_t K>
+Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interaction& x, const HitPlan<K>& plan,
+                Counts& counts, HitRecord<K>* record, Continuations<K>& continuations) {
+  constexpr size_t kLobes = Techniques<K>::kLobes, kCosine = Techniques<K>::kCosine, kLight = Techniques<K>::kLight;
+  constexpr TechniqueMask kAll = Techniques<K>::kAll;
   constexpr bool kSpec = (N & kNeedsSpecular) != 0, kDiff = (N & kNeedsDiffuse) != 0, kPath = (N & kNeedsBounces) != 0;
   const Surface& s = x.surface;
   const Vec3f woFloat = x.frame.toLocal(x.wo);
-  // below its normal's horizon, which looks into the surface, the lobe is zero
-  const bool specular = kSpec && s.hasSpecular() && woFloat.z > 0, diffuse = kDiff && s.hasDiffuse();
   const bool split = plan.integrand == Integrand::kSplit;
-  const Mixture mixture(plan.fractions, plan.samples, plan.weights);
-  const uint32_t dimension = plan.vertex * kPerVertex;
-  const std::array<int, kTechniques> n = systematicCounts(
-      plan.fractions, plan.samples, sampler.spread1D(plan.pixelKey, dimension + kSampleCounts, plan.index));
+  const Mixture<K> mixture(plan.fractions, plan.samples, plan.weights);
+  const uint32_t dimension = plan.vertex * Dimensions<K>::kPerVertex;
+  const std::array<int, K> n =
+      systematicCounts<K>(plan.fractions, plan.samples,
+                          sampler.spread1D(plan.pixelKey, dimension + Dimensions<K>::kSampleCounts, plan.index));
   const Vec3<T> wo{T(woFloat.x), T(woFloat.y), T(woFloat.z)};
+  // the surface's own integrands; below its normal's horizon, which looks into the surface, a lobe is zero
+  std::array<bool, Techniques<K>::kSurface> present{};
+  if constexpr (kSpec)
+    for (size_t l = 0; l < kLobes; ++l) present[l] = s.hasLobe(l) && woFloat.z > 0;
+  present[kCosine] = kDiff && s.hasDiffuse();
 
   // Draw the directions of all techniques.
-  Batch<T, kMaxSamplesPerHit> batch;
+  LobeBatch<T, kLobes, kMaxSamplesPerHit> batch;
   Scratch<LightSample, kMaxSamplesPerHit> light;
-  const auto point = [&](Technique t, int m) {
-    return sampler.get2D(plan.pixelKey, dimension + kLobePoint + t, plan.firstPoint[t] + static_cast<uint32_t>(m));
+  const auto indexOf = [&](size_t t, int m) { return plan.firstPoint[t] + static_cast<uint32_t>(m); };
+  const auto point = [&](size_t t, int m) {
+    return sampler.get2D(plan.pixelKey, dimension + Dimensions<K>::kTechnique + static_cast<uint32_t>(t),
+                         indexOf(t, m));
   };
+  std::array<int, K> end{};  // of each technique's samples in the batch
   int j = 0;
-  if constexpr (kSpec)
-    for (int m = 0; m < n[kLobe]; ++m) {
-      const Vec2f u = point(kLobe, m);
-      batch.set(j++, wardSample<T>(wo, T(s.ax), T(s.ay), {T(u.x), T(u.y)}));
-    }
-  const int endLobe = j;
+  for (size_t l = 0; l < kLobes; ++l) {
+    if constexpr (kSpec)
+      for (int m = 0; m < n[l]; ++m) {
+        const Vec2f u = point(l, m);
+        batch.set(j++, s.sampleLobe(l, wo, Vec2<T>{T(u.x), T(u.y)}));
+      }
+    end[l] = j;
+  }
   if constexpr (kDiff)
     for (int m = 0; m < n[kCosine]; ++m) {
       const Vec2f u = point(kCosine, m);
       batch.set(j++, toCosineHemisphere<T>({T(u.x), T(u.y)}));
     }
-  const int endCosine = j;
+  end[kCosine] = j;
   for (int m = 0; m < n[kLight]; ++m, ++j) {
-    light.set(j, world.emitters.sample(x.position,
-                                       sampler.getChoice(plan.pixelKey, dimension + kLightPoint,
-                                                         plan.firstPoint[kLight] + static_cast<uint32_t>(m)),
-                                       static_cast<int>(plan.vertex)));
+    light.set(j, world.emitters.sample(
+                     x.position,
+                     sampler.getChoice(plan.pixelKey, dimension + Dimensions<K>::kTechnique + uint32_t{kLight},
+                                       indexOf(kLight, m)),
+                     static_cast<int>(plan.vertex)));
     const Vec3f wi = x.frame.toLocal(light[j].direction);
     batch.set(j, {T(wi.x), T(wi.y), T(wi.z)});
   }
-  const bool vectorised = specular && j >= kVectorised;
-  if (vectorised) evaluate(s, wo, batch, j);
+  end[kLight] = j;
+  bool lobes = false;
+  for (size_t l = 0; l < kLobes; ++l) lobes = lobes || present[l];
+  const bool vectorised = lobes && j >= kVectorised;
+  if (vectorised)
+    for (size_t l = 0; l < kLobes; ++l)
+      if (present[l]) s.evaluateLobe(l, wo, batch, j);
 
-  const auto note = [&](bool second, Rgb f, const Fractions& p, TechniqueMask used, int set) {
-    if (record != nullptr) record->add(second, std::abs(luminance(f)), p, mixture.n, used, set);
+  const auto note = [&](size_t integrand, Rgb f, const Fractions<K>& p, TechniqueMask used, int set) {
+    if (record != nullptr) record->add(integrand, std::abs(luminance(f)), p, mixture.n, used, set);
   };
 
-  // One sample's share of an emitter's light, by MIS over the techniques of each integral.
+  // One sample's share of an emitter's light, by MIS over the techniques of each integral. f: of each integrand, f cos.
+  using Values = PerIntegrand<Rgb, K>;
   Rgb sum{0, 0, 0};
-  const auto add = [&](Technique t, Rgb fs, Rgb fd, Rgb radiance, const Fractions& p, uint8_t visibility, int set) {
-    if ((visibility & kSeenByGlossy) == 0) fs = {0, 0, 0};
-    if ((visibility & kSeenByDiffuse) == 0) fd = {0, 0, 0};
+  const auto seen = [&](Values f, uint8_t visibility) {
+    for (size_t l = 0; l < kLobes; ++l)
+      if ((visibility & kSeenByGlossy) == 0) f[l] = {0, 0, 0};
+    if ((visibility & kSeenByDiffuse) == 0) f[kCosine] = {0, 0, 0};
+    return f;
+  };
+  const auto total = [](const Values& f) {
+    Rgb all = f[0];
+    for (size_t i = 1; i < f.size(); ++i) all += f[i];
+    return all;
+  };
+  const auto add = [&](size_t t, const Values& all, Rgb radiance, const Fractions<K>& p, uint8_t visibility, int set) {
+    const Values f = seen(all, visibility);
     if (!split) {
-      const Rgb f = (fs + fd) * radiance;
-      sum += f * mixture.scale(t, p, kAllTechniques);
-      note(false, f, p, kAllTechniques, set);
+      const Rgb value = total(f) * radiance;
+      sum += value * mixture.scale(t, p, kAll);
+      note(0, value, p, kAll, set);
       return;
     }
-    if (specular && t != kCosine) {
-      const Rgb f = fs * radiance;
-      sum += f * mixture.scale(t, p, kSpecularTechniques);
-      note(false, f, p, kSpecularTechniques, set);
-    }
-    if (diffuse && t != kLobe) {
-      const Rgb f = fd * radiance;
-      sum += f * mixture.scale(t, p, kDiffuseTechniques);
-      note(true, f, p, kDiffuseTechniques, set);
+    for (size_t i = 0; i < f.size(); ++i) {
+      if (!present[i] || (t != i && t != kLight)) continue;
+      const TechniqueMask used = techniquesFor<K>(Integrand::kSplit, i);
+      const Rgb value = f[i] * radiance;
+      sum += value * mixture.scale(t, p, used);
+      note(i, value, p, used, set);
     }
     if (record != nullptr && record->candidates != nullptr)
-      record->candidates->addBoth(std::abs(luminance(fs * radiance)), std::abs(luminance(fd * radiance)), p, mixture.n);
+      for (size_t i = 0; i < f.size(); ++i)
+        for (size_t k = i + 1; k < f.size(); ++k)
+          record->candidates->addBoth(i, std::abs(luminance(f[i] * radiance)), k, std::abs(luminance(f[k] * radiance)),
+                                      p, mixture.n);
   };
 
+  size_t t = 0;
   for (int k = 0; k < j; ++k) {
-    const Technique t = k < endLobe ? kLobe : k < endCosine ? kCosine : kLight;
-    const int set = (k - (t == kLobe ? 0 : t == kCosine ? endLobe : endCosine)) % kSets;
+    while (k >= end[t]) ++t;
+    const int set = (k - (t == 0 ? 0 : end[t - 1])) % kSets;
     ++counts.samples[t];
     const Vec3<T> wi = batch.wi(k);
-    if (!(wi.z > T(0)) || (t == kLobe && !specular)) continue;  // below the surface: zero, and it counts
-    WardValue<T> ward{0, 0};
-    if (specular) {
-      ward = vectorised ? WardValue<T>{batch.specular[k], batch.lobe[k]} : evaluateWard(s, wi, wo);
-      counts.underflows += ward.pdf < std::numeric_limits<T>::min() ? 1 : 0;
+    if (!(wi.z > T(0)) || (t < kLobes && !present[t])) continue;  // below the surface: zero, and it counts
+    Values f{};
+    Fractions<K> p{};
+    for (size_t l = 0; l < kLobes; ++l) {
+      if (!present[l]) continue;
+      const WardValue<T> value = vectorised ? batch.value(l, k) : s.evaluateLobe(l, wi, wo);
+      counts.underflows += value.pdf < std::numeric_limits<T>::min() ? 1 : 0;
+      f[l] = s.lobeWeight(l) * static_cast<float>(value.fCos);
+      p[l] = static_cast<float>(value.pdf);
     }
-    const float cosine = static_cast<float>(wi.z) * (1 / kPi<float>);  // f_d cos for rho_d = 1, and p_2
-    const Rgb fs = s.specular * static_cast<float>(ward.fCos);
-    const Rgb fd = s.diffuse * cosine;
-    Fractions p{static_cast<float>(ward.pdf), diffuse ? cosine : 0.0f, 0.0f};
+    const float cosine = static_cast<float>(wi.z) * (1 / kPi<float>);  // f_d cos for rho_d = 1, and its density
+    f[kCosine] = s.diffuse * cosine;
+    p[kCosine] = present[kCosine] ? cosine : 0.0f;
 
     if (t == kLight) {
       const LightSample& l = light[k];
       if (!(l.pdf > 0) || !(dot(x.geometric, l.direction) > 0) || isBlack(l.radiance)) continue;
-      if (!(maxComponent(fs + fd) > 0)) continue;
+      if (!(maxComponent(total(f)) > 0)) continue;
       Ray shadow;
       shadow.origin = x.leave(l.direction);
       shadow.direction = l.direction;
@@ -236,24 +275,24 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
         shadow.tMax = d * (1 - 1e-4f);
       }
       if (l.shadow) {
-        ++counts.shadowRays;
+        ++counts.rays[kLight];
         if (world.accel.occluded(shadow)) continue;
       }
       if (l.exclusive) {
-        const Rgb s0 = (l.visibility & kSeenByGlossy) != 0 ? fs * l.radiance : Rgb{};
-        const Rgb d0 = (l.visibility & kSeenByDiffuse) != 0 ? fd * l.radiance : Rgb{};
-        sum += (s0 + d0) / (l.pdf * mixture.n[kLight]);
+        Values each = seen(f, l.visibility);
+        for (Rgb& value : each) value = value * l.radiance;
+        sum += total(each) / (l.pdf * mixture.n[kLight]);
         // which of the lights is drawn is noise, too, and no other technique covers them
-        const Fractions alone{0, 0, l.pdf};
+        Fractions<K> alone{};
+        alone[kLight] = l.pdf;
         if (split && record != nullptr && record->moments != nullptr) {
-          note(false, s0, alone, maskOf(kLight), set);
-          note(true, d0, alone, maskOf(kLight), set);
+          for (size_t i = 0; i < each.size(); ++i) note(i, each[i], alone, maskOf(kLight), set);
         } else {
-          note(false, s0 + d0, alone, maskOf(kLight), set);
+          note(0, total(each), alone, maskOf(kLight), set);
         }
       } else {
         p[kLight] = l.pdf;
-        add(kLight, fs, fd, l.radiance, p, l.visibility, set);
+        add(kLight, f, l.radiance, p, l.visibility, set);
       }
       continue;
     }
@@ -265,13 +304,13 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     Ray ray;
     ray.origin = x.leave(d);
     ray.direction = d;
-    ray.kind = t == kLobe ? kSeenByGlossy : kSeenByDiffuse;
-    ray.path = x.path.scattered((t == kLobe ? kGlossyRay : kDiffuseRay) | kReflectionRay, x.rayLength);
-    ++(t == kLobe ? counts.lobeRays : counts.cosineRays);
+    ray.kind = t < kLobes ? kSeenByGlossy : kSeenByDiffuse;
+    ray.path = x.path.scattered((t < kLobes ? kGlossyRay : kDiffuseRay) | kReflectionRay, x.rayLength);
+    ++counts.rays[t];
     const Hit hit = world.accel.intersect(ray);
     world.emitters.along(ray, hit.t, !hit.valid(), static_cast<int>(plan.vertex), [&](const EmitterHit& e) {
       p[kLight] = e.pdf;
-      add(t, fs, fd, e.radiance, p, e.visibility, set);
+      add(t, f, e.radiance, p, e.visibility, set);
     });
     if (!hit.valid()) continue;
     const Shape& shape = world.geometry.shapes[hit.shape];
@@ -279,17 +318,18 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     if (!isBlack(m.emission.value)) {
       p[kLight] = world.emitters.trianglePdf(world.geometry.placements[hit.placement], hit, d);
       const Rgb radiance = interact<N>(world.scene, world.geometry, ray, hit).emission;
-      add(t, fs, fd, radiance, p, world.geometry.placements[hit.placement].visibility, set);
+      add(t, f, radiance, p, world.geometry.placements[hit.placement].visibility, set);
     }
     if constexpr (kPath) {
       p[kLight] = 0;  // no light sample covers what is reflected there
-      const float scale = mixture.scale(t, p, techniquesFor(plan.integrand, t));
-      const Rgb w = (!split ? fs + fd : t == kLobe ? fs : fd) * scale;
-      if (maxComponent(w) > 0) continuations.list.set(continuations.count++, {ray, hit, w, t, scale, set, p});
+      const float scale = mixture.scale(t, p, techniquesFor<K>(plan.integrand, t));
+      const Rgb w = (split ? f[t] : total(f)) * scale;
+      const Bounce bounce = t < kLobes ? kGlossyBounce : kDiffuseBounce;
+      if (maxComponent(w) > 0) continuations.list.set(continuations.count++, {ray, hit, w, t, bounce, scale, set, p});
     }
   }
   if (record != nullptr && record->moments != nullptr)
-    record->moments->specular.hits += 1, record->moments->diffuse.hits += 1;
+    for (Moments<K>& m : record->moments->of) m.hits += 1;
   return sum;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The camera samples of one tile. One instantiation per needs mask (kernels.cpp), chosen once per render.
+// The camera samples of one tile. One instantiation per needs mask and number of techniques (kernels.cpp), chosen once
+// per render.
 #pragma once
 
 #include "film/film.h"
@@ -8,18 +9,19 @@
 
 namespace wardmis {
 
+template <size_t K>
 struct KernelInput {
   const RenderScene& scene;
   const CameraRays& camera;
   const PixelFilter& filter;
   const Sampler& sampler;
-  const FractionsMap* perPixel;  // null: `fractions` everywhere
-  Fractions fractions;           // of a hit, before it is restricted to what the surface has
+  const FractionsMap<K>* perPixel;  // null: `fractions` everywhere
+  Fractions<K> fractions;           // of a hit, before it is restricted to what the surface has
   Allocation rule;
   Integrand integrand;
   Weights weights;
-  const CandidateLists& candidates;  // for `auto`
-  SampleCost cost;                   // for `auto`
+  const CandidateLists<K>& candidates;  // for `auto`
+  SampleCost<K> cost;                   // for `auto`
   int samplesPerHit;
   PathLimits limits;
   bool lights;       // the light technique has something to aim at
@@ -36,9 +38,11 @@ struct Tile {
 
 // Adds camera samples firstSample .. +samples of the tile's pixels to the film, and, where `pilot` is given, their
 // moments.
-using TileKernel = void (*)(const KernelInput&, const Tile&, FilmBuffer&, Pilot* pilot, Counts&);
+template <size_t K>
+using TileKernel = void (*)(const KernelInput<K>&, const Tile&, FilmBuffer&, Pilot<K>* pilot, Counts&);
 
 // The kernel for a mask of kKernelNeeds bits.
-TileKernel tileKernel(uint32_t needs);
+template <size_t K>
+TileKernel<K> tileKernel(uint32_t needs);
 
 }  // namespace wardmis

@@ -14,12 +14,16 @@ constexpr uint32_t compiled(uint32_t needs) {
 
 }  // namespace
 
-TileKernel tileKernel(uint32_t needs) {
+template <size_t K>
+TileKernel<K> tileKernel(uint32_t needs) {
   static constexpr auto table = []<uint32_t... N>(std::integer_sequence<uint32_t, N...>) {
-    return std::array<TileKernel, sizeof...(N)>{&renderTile<compiled(N)>...};
+    return std::array<TileKernel<K>, sizeof...(N)>{&renderTile<compiled(N), K>...};
   }
   (std::make_integer_sequence<uint32_t, kKernelNeeds + 1>{});
   return table[needs & kKernelNeeds];
 }
+
+#define WARDMIS_INSTANTIATE(K) template TileKernel<K> tileKernel<K>(uint32_t);
+WARDMIS_TECHNIQUE_COUNTS(WARDMIS_INSTANTIATE)
 
 }  // namespace wardmis

@@ -13,26 +13,34 @@ namespace wardmis {
 namespace {
 
 // The passes as floats, and a little for encoding them.
-constexpr uint64_t kWritten = 20 * sizeof(float);
+template <size_t K>
+constexpr uint64_t kWritten = (17 + K) * sizeof(float);
+
+template <size_t K>
+uint64_t bytesPerPixelWith(const RenderSettings& s) {
+  constexpr uint64_t kFilm = sizeof(Pixel) + K * sizeof(uint32_t);
+  const uint64_t written = kFilm + kWritten<K>;
+  if (s.allocation == Allocation::kAuto)  // its pilot is over before there is a film
+    return std::max(written, (kFilm + sizeof(PilotPixel) + sizeof(CandidateSums<K>) + sizeof(PixelFractions<K>)) /
+                                 (kCoarse * kCoarse));
+  if (!needsMoments(s.allocation)) return written;
+  return std::max<uint64_t>(written, kFilm + sizeof(PilotPixel) + sizeof(HitMoments<K>) + sizeof(PixelFractions<K>));
+}
 
 }  // namespace
 
-uint64_t bytesPerPixel(const RenderSettings& s) {
-  const uint64_t written = sizeof(Pixel) + kWritten;
-  if (s.allocation == Allocation::kAuto)  // its pilot is over before there is a film
-    return std::max(written, (sizeof(Pixel) + sizeof(PilotPixel) + sizeof(CandidateSums) + sizeof(PixelFractions)) /
-                                 (kCoarse * kCoarse));
-  if (!needsMoments(s.allocation)) return written;
-  return std::max<uint64_t>(written, sizeof(Pixel) + sizeof(PilotPixel) + sizeof(HitMoments) + sizeof(PixelFractions));
+uint64_t bytesPerPixel(const RenderSettings& s, size_t lobes) {
+  return withTechniques(lobes, [&](auto k) { return bytesPerPixelWith<k()>(s); });
 }
 
-void requireMemory(int width, int height, const RenderSettings& s) {
+void requireMemory(int width, int height, const RenderSettings& s, size_t lobes) {
+  const uint64_t each = bytesPerPixel(s, lobes);
   const uint64_t pixels = static_cast<uint64_t>(width) * static_cast<uint64_t>(height);
-  const double needed = double(pixels) * double(bytesPerPixel(s)), available = double(availableMemory());
+  const double needed = double(pixels) * double(each), available = double(availableMemory());
   if (needed <= available) return;
   throw Error(ExitCode::kMemory,
               fmt::format("{} x {} pixels with '{}' take {:.1f} GB of memory ({} bytes each), and {:.1f} GB are free",
-                          width, height, name(s.allocation), needed / 1e9, bytesPerPixel(s), available / 1e9),
+                          width, height, name(s.allocation), needed / 1e9, each, available / 1e9),
               "lower the resolution, render a part of the frame, or close other programs");
 }
 

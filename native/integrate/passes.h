@@ -8,7 +8,7 @@
 
 #include "film/exr.h"
 #include "film/film.h"
-#include "mis/moments.h"
+#include "mis/technique.h"
 
 namespace wardmis {
 
@@ -18,10 +18,14 @@ struct PassInfo {
   std::string group;     // what --passes calls it
 };
 
-// All passes of a scene with these techniques.
-std::vector<PassInfo> passesFor(TechniqueMask techniques);
+// The pass of a technique's shares: "Allocation Lobe".
+std::string allocationPass(const std::string& technique);
+
+// All passes of a scene with these techniques; names: of all that the kernel knows, as Statistics has them.
+std::vector<PassInfo> passesFor(TechniqueMask techniques, const std::vector<std::string>& names);
 
 // The chosen passes' channels, "<layer>.<pass>.<channel>". zUp: frame of the Normal pass (docs/scene-format.md).
-ExrImage toPasses(const FilmBuffer& film, const std::vector<PassInfo>& passes, const std::string& layer, bool zUp);
+ExrImage toPasses(const FilmBuffer& film, const std::vector<PassInfo>& passes,
+                  const std::vector<std::string>& techniqueNames, const std::string& layer, bool zUp);
 
 }  // namespace wardmis

@@ -7,10 +7,12 @@
 
 namespace wardmis {
 
-std::vector<PixelFractions> Pilot::fractions(Allocation rule, Integrand integrand, TechniqueMask available,
-                                             float minimum, const CandidateLists& lists, const SampleCost& cost) const {
-  std::vector<PixelFractions> result(pixels.size());
-  std::map<std::pair<int, uint32_t>, GainScatter> surfaces;  // by material and placement
+template <size_t K>
+std::vector<PixelFractions<K>> Pilot<K>::fractions(Allocation rule, Integrand integrand, TechniqueMask available,
+                                                   float minimum, const CandidateLists<K>& lists,
+                                                   const SampleCost<K>& cost) const {
+  std::vector<PixelFractions<K>> result(pixels.size());
+  std::map<std::pair<int, uint32_t>, GainScatter<K>> surfaces;  // by material and placement
   for (size_t i = 0; i < candidates.size(); ++i)
     surfaces[{pixels[i].surface.material, pixels[i].surface.placement}] += candidates[i];
   tbb::parallel_for(0, height, [&](int y) {
@@ -23,12 +25,15 @@ std::vector<PixelFractions> Pilot::fractions(Allocation rule, Integrand integran
                             lists.of(mask), cost);
         continue;
       }
-      const HitMoments m = smoothed(moments, x, y);
-      a = integrand == Integrand::kJoint ? allocate(rule, m.specular, mask, minimum)
-                                         : allocateSplit(rule, m.specular, m.diffuse, mask, minimum);
+      const HitMoments<K> m = smoothed(moments, x, y);
+      a = integrand == Integrand::kJoint ? allocate<K>(rule, m.of[0], mask, minimum)
+                                         : allocateSplit<K>(rule, m.of, mask, minimum);
     }
   });
   return result;
 }
+
+#define WARDMIS_INSTANTIATE(K) template struct Pilot<K>;
+WARDMIS_TECHNIQUE_COUNTS(WARDMIS_INSTANTIATE)
 
 }  // namespace wardmis

@@ -23,21 +23,23 @@ struct PixelSurface {
 // set the counts of a whole neighbourhood by a light that it does not get.
 struct PilotPixel {
   PixelSurface surface;
-  TechniqueMask techniques = kAllTechniques;  // that this surface has
+  TechniqueMask techniques = ~TechniqueMask{0};  // that this surface has
 };
 
 // What the pilot found for a pixel's own surface. A hit of another one takes equal counts.
+template <size_t K>
 struct PixelFractions {
   PixelSurface surface;
-  Fractions fractions{};
+  Fractions<K> fractions{};
 };
 
 // The fractions of an image, one set for each square of `side` x `side` pixels.
+template <size_t K>
 struct FractionsMap {
   int side = 1, width = 0;
-  std::vector<PixelFractions> squares;
+  std::vector<PixelFractions<K>> squares;
 
-  const PixelFractions& at(int x, int y) const {
+  const PixelFractions<K>& at(int x, int y) const {
     return squares[static_cast<size_t>(y / side) * static_cast<size_t>(width) + static_cast<size_t>(x / side)];
   }
 };
@@ -45,11 +47,12 @@ struct FractionsMap {
 // A pilot of `auto` is coarse: it has one pixel for a square of the image's, since it is no part of the image.
 inline constexpr int kCoarse = 2;  // pixels, a side
 
+template <size_t K>
 struct Pilot {
   int width, height;
   std::vector<PilotPixel> pixels;
-  std::vector<HitMoments> moments;        // of each pixel; none where the allocation is `auto`,
-  std::vector<CandidateSums> candidates;  // where these are
+  std::vector<HitMoments<K>> moments;        // of each pixel; none where the allocation is `auto`,
+  std::vector<CandidateSums<K>> candidates;  // where these are
 
   Pilot(int w, int h, Allocation rule) : width(w), height(h), pixels(static_cast<size_t>(w) * static_cast<size_t>(h)) {
     if (rule == Allocation::kAuto)
@@ -71,8 +74,8 @@ struct Pilot {
   }
 
   // Fractions of each pixel, of the techniques that the scene has (`available`).
-  std::vector<PixelFractions> fractions(Allocation rule, Integrand integrand, TechniqueMask available, float minimum,
-                                        const CandidateLists& lists, const SampleCost& cost) const;
+  std::vector<PixelFractions<K>> fractions(Allocation rule, Integrand integrand, TechniqueMask available, float minimum,
+                                           const CandidateLists<K>& lists, const SampleCost<K>& cost) const;
 
  private:
   size_t index(int x, int y) const {

@@ -75,9 +75,10 @@ class Ticker {
 };
 
 // One render in progress: passes over the whole image, each adding the same number of camera samples to every pixel.
+template <size_t K>
 class Run {
  public:
-  Run(const RenderSettings& settings, const RenderObserver& observer, const RenderSetup& setup)
+  Run(const RenderSettings& settings, const RenderObserver& observer, const RenderSetup<K>& setup)
       : settings_(settings), observer_(observer), setup_(setup), start_(now()) {}
 
   Clocks clocks() const { return now() - start_; }
@@ -86,7 +87,7 @@ class Run {
   bool stopped() const { return stop() != Stop::kNo; }
 
   // Adds `samples` to every pixel. A stop that keeps the image lets the pass end; one that discards it does not: false.
-  bool pass(uint32_t samples, Pilot* pilot) {
+  bool pass(uint32_t samples, Pilot<K>* pilot) {
     std::atomic<int> done{0};
     const double total = tilesOf(*film_);
     Ticker ticker([&] { report(pilot != nullptr, samples * done.load() / total); });
@@ -100,7 +101,7 @@ class Run {
   }
 
   // Passes until `target` samples or, with a time limit, until the next pass would end too late.
-  void until(uint32_t target, Pilot* pilot) {
+  void until(uint32_t target, Pilot<K>* pilot) {
     uint32_t chunk = 1;
     const double limit = settings_.seconds * (apart_ > 0 && pilot != nullptr ? kPilotTime : 1);
     while (film_->samples < target && !stopped()) {
@@ -163,7 +164,7 @@ class Run {
 
   const RenderSettings& settings_;
   const RenderObserver& observer_;
-  const RenderSetup& setup_;
+  const RenderSetup<K>& setup_;
   FilmBuffer* film_ = nullptr;
   uint32_t apart_ = 0;
   Clocks start_;
@@ -172,20 +173,22 @@ class Run {
 
 constexpr const char* kNoPilot = "too few samples for a pilot: counts are equal";
 
-SampleCost countedCost(const Counts& counts, int samplesPerHit) {
-  SampleCost cost;
+template <size_t K>
+SampleCost<K> countedCost(const Counts& counts, int samplesPerHit) {
+  SampleCost<K> cost;
   cost.hit = 1 / static_cast<float>(samplesPerHit);
-  for (size_t t = 0; t < kTechniques; ++t)
+  for (size_t t = 0; t < K; ++t)
     if (counts.samples[t] > 0)
       cost.technique[t] += static_cast<float>(double(counts.following[t]) / double(counts.samples[t]));
   return cost;
 }
 
-FilmBuffer renderInArena(const BuiltScene& built, const RenderSettings& settings, Statistics& stats,
-                         const RenderObserver& observer) {
+template <size_t K>
+FilmBuffer renderWith(const BuiltScene& built, const RenderSettings& settings, Statistics& stats,
+                      const RenderObserver& observer) {
   const Film& frame = built.scene.film;
-  requireMemory(frame.x1 - frame.x0, frame.y1 - frame.y0, settings);
-  RenderSetup setup(built, settings);
+  requireMemory(frame.x1 - frame.x0, frame.y1 - frame.y0, settings, built.lobes());
+  RenderSetup<K> setup(built, settings);
   stats.buildSeconds = built.seconds;
   stats.needs = setup.needs;
   stats.kernel = setup.kernelNeeds;
@@ -195,21 +198,22 @@ FilmBuffer renderInArena(const BuiltScene& built, const RenderSettings& settings
   stats.emissiveTriangles = built.emitters.emissiveTriangles();
   stats.threads = threadsOf(settings.threads);
   stats.techniques = setup.techniques;
+  stats.techniqueNames = built.techniqueNames();
   const uint32_t target = targetOf(settings), pilotSpp = pilotOf(settings, target);
   const bool wanted = needsMoments(settings.allocation) && (setup.needs & kNeedsAllocation) != 0;
   stats.allocated = wanted && pilotSpp > 0;
   if (wanted && pilotSpp == 0) stats.leftOut.emplace_back(kNoPilot);
 
-  Run run(settings, observer, setup);
+  Run<K> run(settings, observer, setup);
   if (observer.started) observer.started(stats);
-  SampleCost& cost = setup.input.cost;
-  FractionsMap map;
+  SampleCost<K>& cost = setup.input.cost;
+  FractionsMap<K> map;
   FilmBuffer buffer;
   const auto allocateFrom = [&](FilmBuffer& film, int side) {
-    Pilot pilot(film.width, film.height, settings.allocation);
+    Pilot<K> pilot(film.width, film.height, settings.allocation);
     if (settings.costFrom == CostFrom::kRays) {
       run.until(1, &pilot);
-      cost = countedCost(run.counts(), settings.samplesPerHit);
+      cost = countedCost<K>(run.counts(), settings.samplesPerHit);
     }
     run.until(pilotSpp, &pilot);
     if (run.stopped()) return;
@@ -220,9 +224,10 @@ FilmBuffer renderInArena(const BuiltScene& built, const RenderSettings& settings
   };
   const auto pilotDone = [&] {
     const Clocks time = run.clocks();
-    stats.cost = cost, stats.pilotSeconds = time.wall, stats.pilotCpuSeconds = time.cpu;
+    stats.cost.assign(cost.technique.begin(), cost.technique.end()), stats.costOfHit = cost.hit;
+    stats.pilotSeconds = time.wall, stats.pilotCpuSeconds = time.cpu;
   };
-  if (stats.allocated && settings.costFrom == CostFrom::kMeasured) cost = measureCost(built, settings).perSample;
+  if (stats.allocated && settings.costFrom == CostFrom::kMeasured) cost = measureCost(built, settings).perSample<K>();
   if (stats.allocated && coarse(settings)) {
     FilmBuffer film = setup.film(kCoarse);
     run.onto(film, pilotSpp);
@@ -255,13 +260,18 @@ FilmBuffer renderInArena(const BuiltScene& built, const RenderSettings& settings
   return buffer;
 }
 
+FilmBuffer renderInArena(const BuiltScene& built, const RenderSettings& settings, Statistics& stats,
+                         const RenderObserver& observer) {
+  return withTechniques(built.lobes(), [&](auto k) { return renderWith<k()>(built, settings, stats, observer); });
+}
+
 }  // namespace
 
 PathLimits RenderSettings::limits() const {
   PathLimits limits;
   if (integrator == Integrator::kDirect) return limits;
   limits.depth = maxDepth;
-  limits.bounces[kLobe] = maxGlossy, limits.bounces[kCosine] = maxDiffuse;
+  limits.bounces[kGlossyBounce] = maxGlossy, limits.bounces[kDiffuseBounce] = maxDiffuse;
   return limits;
 }
 

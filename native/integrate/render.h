@@ -26,6 +26,11 @@ std::string_view name(FilterType);
 // machine.
 enum class CostFrom : uint8_t { kRays, kGiven, kMeasured };
 
+// Of a lobe, cosine and light sample, any unit.
+struct GivenCost {
+  float lobe = 1, cosine = 1, light = 1;
+};
+
 struct RenderSettings {
   Allocation allocation = Allocation::kAuto;
   std::optional<Weights> weights;  // none: what the paper pairs with the allocation
@@ -38,7 +43,7 @@ struct RenderSettings {
   uint32_t pilotSpp = 4;  // camera samples of the pilot per pixel, of `auto` per 2 x 2 pixels
   float minFraction = 0.1f;
   CostFrom costFrom = CostFrom::kRays;  // of samples, for `auto`
-  Fractions cost{1, 1, 1};              // of a lobe, cosine and light sample, where it is given
+  GivenCost cost;                       // of a sample, where it is given
   int maxDepth = 8;                     // surface hits of a path
   int maxDiffuse = kLongestPath;        // of them reached from a cosine sample, and not emitting alone: diffuse bounces
   int maxGlossy = kLongestPath;         // from a lobe sample
@@ -63,10 +68,12 @@ struct Statistics {
   std::vector<std::string> leftOut;
   uint64_t triangles = 0, instances = 0, emissiveTriangles = 0;
   int threads = 0;
-  TechniqueMask techniques = 0;  // those that the scene has
-  bool allocated = false;        // a pilot ran and counts were allocated by it
-  bool pilotKept = false;        // its samples are part of the image
-  SampleCost cost;               // that the allocation took into account
+  TechniqueMask techniques = 0;             // those that the scene has
+  std::vector<std::string> techniqueNames;  // of all that the kernel knows
+  bool allocated = false;                   // a pilot ran and counts were allocated by it
+  bool pilotKept = false;                   // its samples are part of the image
+  std::vector<float> cost;                  // of a sample of each technique, that the allocation took into account
+  float costOfHit = 0;                      // a share of a hit's own, in the same unit
 };
 
 struct Clocks {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "integrate/setup.h"
 
+#include <fmt/format.h>
 #include <tbb/blocked_range2d.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
@@ -27,12 +28,6 @@ const Scene& renderable(const Scene& scene) {
 
 int tilesAcross(int pixels) { return (pixels + kTileSize - 1) / kTileSize; }
 
-uint32_t needsOf(const BuiltScene& built, const RenderSettings& s) {
-  uint32_t n = wardmis::needs(built.scene, built.geometry, built.emitters, s.integrand == Integrand::kJoint);
-  if (s.limits().bounce()) n |= kNeedsBounces;
-  return n;
-}
-
 // Whether rays of the surface's techniques can find light.
 bool surfaceRays(const BuiltScene& built, uint32_t needs) {
   return built.emitters.anyShared() || built.environment.exists() || (needs & kNeedsBounces) != 0;
@@ -55,12 +50,29 @@ bool negativeLight(const Scene& scene) {
   return negative(scene.world.radiance) || (!isBlack(scene.world.radiance) && texels(scene.world.texture));
 }
 
+template <size_t K>
 TechniqueMask techniquesOf(const BuiltScene& built, uint32_t needs) {
   TechniqueMask mask = 0;
-  if (built.emitters.any()) mask |= maskOf(kLight);
-  if (surfaceRays(built, needs) && (needs & kNeedsSpecular) != 0) mask |= maskOf(kLobe);
-  if (surfaceRays(built, needs) && (needs & kNeedsDiffuse) != 0) mask |= maskOf(kCosine);
+  if (built.emitters.any()) mask |= maskOf(Techniques<K>::kLight);
+  if (!surfaceRays(built, needs)) return mask;
+  if ((needs & kNeedsSpecular) != 0)
+    for (size_t l = 0; l < built.lobes(); ++l) mask |= maskOf(l);
+  if ((needs & kNeedsDiffuse) != 0) mask |= maskOf(Techniques<K>::kCosine);
   return mask;
+}
+
+template <size_t K>
+Fractions<K> equalFractions(Integrand integrand, TechniqueMask techniques) {
+  return integrand == Integrand::kJoint ? allocate<K>(Allocation::kEqual, {}, techniques, 0)
+                                        : allocateSplit<K>(Allocation::kEqual, {}, techniques, 0);
+}
+
+template <size_t K>
+SampleCost<K> givenCost(const GivenCost& given) {
+  SampleCost<K> cost;
+  cost.technique.fill(given.lobe);
+  cost.technique[Techniques<K>::kCosine] = given.cosine, cost.technique[Techniques<K>::kLight] = given.light;
+  return cost;
 }
 
 }  // namespace
@@ -74,10 +86,31 @@ BuiltScene::BuiltScene(const Scene& s, int threads)
   seconds = wallSeconds() - seconds;
 }
 
-RenderSetup::RenderSetup(const BuiltScene& built, const RenderSettings& s)
-    : needs(needsOf(built, s)),
-      kernelNeeds(s.generalKernel ? uint32_t{kKernelNeeds} : needs & kKernelNeeds),
-      techniques(techniquesOf(built, needs)),
+std::vector<std::string> BuiltScene::techniqueNames() const {
+  return withTechniques(lobes(), [&](auto k) {
+    std::vector<std::string> names(k());
+    for (size_t l = 0; l < Techniques<k()>::kLobes; ++l)
+      names[l] = Techniques<k()>::kLobes == 1 ? "lobe" : fmt::format("lobe {}", l + 1);
+    names[Techniques<k()>::kCosine] = "cosine", names[Techniques<k()>::kLight] = "light";
+    return names;
+  });
+}
+
+uint32_t needs(const BuiltScene& built, const RenderSettings& s) {
+  uint32_t n = wardmis::needs(built.scene, built.geometry, built.emitters, s.integrand == Integrand::kJoint);
+  if (s.limits().bounce()) n |= kNeedsBounces;
+  return n;
+}
+
+uint32_t kernelNeeds(const BuiltScene& built, const RenderSettings& s) {
+  return s.generalKernel ? uint32_t{kKernelNeeds} : needs(built, s) & kKernelNeeds;
+}
+
+template <size_t K>
+RenderSetup<K>::RenderSetup(const BuiltScene& built, const RenderSettings& s)
+    : needs(wardmis::needs(built, s)),
+      kernelNeeds(wardmis::kernelNeeds(built, s)),
+      techniques(techniquesOf<K>(built, needs)),
       world_{built.scene, built.geometry, built.accel, built.emitters},
       camera_(*built.scene.camera, built.scene.film),
       filter_(built.scene.film.filter, built.scene.film.filterWidth),
@@ -88,13 +121,12 @@ RenderSetup::RenderSetup(const BuiltScene& built, const RenderSettings& s)
             filter_,
             sampler_,
             nullptr,
-            s.integrand == Integrand::kJoint ? allocate(Allocation::kEqual, {}, techniques, 0)
-                                             : allocateSplit(Allocation::kEqual, {}, {}, techniques, 0),
+            equalFractions<K>(s.integrand, techniques),
             s.allocation,
             s.integrand,
             s.weightRule(),
             candidates_,
-            {0, s.cost},
+            givenCost<K>(s.cost),
             s.samplesPerHit,
             s.limits(),
             built.emitters.any(),
@@ -102,16 +134,18 @@ RenderSetup::RenderSetup(const BuiltScene& built, const RenderSettings& s)
             negativeLight(built.scene) ? -3.4e38f : 0.0f,
             built.scene.film.x0,
             built.scene.film.y0},
-      kernel(tileKernel(kernelNeeds)) {}
+      kernel(tileKernel<K>(kernelNeeds)) {}
 
-FilmBuffer RenderSetup::film(int side) const {
+template <size_t K>
+FilmBuffer RenderSetup<K>::film(int side) const {
   const Film& f = world_.scene.film;
-  return {(f.x1 - f.x0 + side - 1) / side, (f.y1 - f.y0 + side - 1) / side};
+  return {(f.x1 - f.x0 + side - 1) / side, (f.y1 - f.y0 + side - 1) / side, K};
 }
 
 int tilesOf(const FilmBuffer& film) { return tilesAcross(film.width) * tilesAcross(film.height); }
 
-void renderTiles(const RenderSetup& setup, FilmBuffer& film, uint32_t samples, Pilot* pilot,
+template <size_t K>
+void renderTiles(const RenderSetup<K>& setup, FilmBuffer& film, uint32_t samples, Pilot<K>* pilot,
                  const std::function<Counts&()>& counts, std::atomic<int>& tilesDone,
                  const std::function<bool()>& discard) {
   tbb::parallel_for(
@@ -151,5 +185,11 @@ double cpuSeconds() {
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
+
+#define WARDMIS_INSTANTIATE(K)                                                          \
+  template struct RenderSetup<K>;                                                       \
+  template void renderTiles<K>(const RenderSetup<K>&, FilmBuffer&, uint32_t, Pilot<K>*, \
+                               const std::function<Counts&()>&, std::atomic<int>&, const std::function<bool()>&);
+WARDMIS_TECHNIQUE_COUNTS(WARDMIS_INSTANTIATE)
 
 }  // namespace wardmis

@@ -5,6 +5,8 @@
 
 #include <atomic>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "integrate/kernel.h"
 #include "integrate/render.h"
@@ -22,9 +24,17 @@ struct BuiltScene {
   Environment environment;
   Emitters emitters;
   Accel accel;
+
+  size_t lobes() const { return 1; }                // at most, of a surface
+  std::vector<std::string> techniqueNames() const;  // in what is written
 };
 
+// What a render with these settings needs, and the mask of the kernel that it runs.
+uint32_t needs(const BuiltScene& built, const RenderSettings& settings);
+uint32_t kernelNeeds(const BuiltScene& built, const RenderSettings& settings);
+
 // The kernel for these settings, and its input. Fractions are those of equal counts until they are set.
+template <size_t K>
 struct RenderSetup {
   RenderSetup(const BuiltScene& built, const RenderSettings& settings);
   RenderSetup(const RenderSetup&) = delete;
@@ -42,17 +52,18 @@ struct RenderSetup {
   CameraRays camera_;
   PixelFilter filter_;
   Sampler sampler_;
-  CandidateLists candidates_;
+  CandidateLists<K> candidates_;
 
  public:
-  KernelInput input;
-  TileKernel kernel;
+  KernelInput<K> input;
+  TileKernel<K> kernel;
 };
 
 // Adds `samples` camera samples to every pixel of the film, in tiles, by all threads; film.samples is the caller's to
 // raise. counts: gives the calling thread's; tilesDone is raised by each tile that is ready; as soon as `discard` (may
 // be empty) says true, the rest is left.
-void renderTiles(const RenderSetup& setup, FilmBuffer& film, uint32_t samples, Pilot* pilot,
+template <size_t K>
+void renderTiles(const RenderSetup<K>& setup, FilmBuffer& film, uint32_t samples, Pilot<K>* pilot,
                  const std::function<Counts&()>& counts, std::atomic<int>& tilesDone,
                  const std::function<bool()>& discard);
 int tilesOf(const FilmBuffer& film);

@@ -20,8 +20,9 @@ struct Survey {
   std::vector<SurveyPixel> pixels;  // row 0 is the top row
   // Means over the pixels that have the technique, of its single-sample estimators at first hits (all its integrands):
   // second moment, and variance.
-  std::array<double, kTechniques> secondMoment{}, variance{};
+  std::array<double, kMaxTechniques> secondMoment{}, variance{};
   TechniqueMask techniques = 0;
+  std::vector<std::string> techniqueNames;
 };
 
 // samples: per pixel.

@@ -20,45 +20,57 @@ namespace wardmis {
 
 enum class Integrand : uint8_t { kSplit, kJoint };
 
-// The techniques of the integrand that a surface technique is drawn for.
-constexpr TechniqueMask techniquesFor(Integrand integrand, Technique t) {
-  return integrand == Integrand::kJoint ? kAllTechniques : t == kLobe ? kSpecularTechniques : kDiffuseTechniques;
+// The techniques of the integrand that a surface technique is drawn for: of split integrands itself and the light.
+template <size_t K>
+constexpr TechniqueMask techniquesFor(Integrand integrand, size_t own) {
+  return integrand == Integrand::kJoint ? Techniques<K>::kAll
+                                        : static_cast<TechniqueMask>(maskOf(own) | maskOf(Techniques<K>::kLight));
 }
+
+// One of each integrand of a hit: by its own technique, a lobe or cosine; joint, the first alone.
+template <class T, size_t K>
+using PerIntegrand = std::array<T, Techniques<K>::kSurface>;
 
 // Fractions of one integrand's techniques (those in `used`), from its moments; they sum to 1 over `used`.
 // Equal where the moments say nothing (a zero, not finite). Clamped to [minimum, 1 - (n-1) minimum].
-Fractions allocate(Allocation rule, const Moments& m, TechniqueMask used, float minimum);
+template <size_t K>
+Fractions<K> allocate(Allocation rule, const Moments<K>& m, TechniqueMask used, float minimum);
 
-// Fractions of a hit with two integrands, each with the same budget and its own fractions of it: lobe and light for the
-// specular one, cosine and light for the diffuse one. Light samples serve both, so the larger of the two demands is
-// drawn, and what that saves goes to all in proportion. Each integrand has at least the samples that it asked for.
-Fractions combineSplit(const Fractions& specular, const Fractions& diffuse);
+// Fractions of a hit with several integrands, each with the same budget and its own fractions of it: its own technique
+// and light. Light samples serve all, so the largest of the demands is drawn, and what that saves goes to all in
+// proportion. Each integrand has at least the samples that it asked for.
+template <size_t K>
+Fractions<K> combineSplit(const PerIntegrand<Fractions<K>, K>& each);
 
 // The fractions of split integrands, of the techniques `available`; an integrand without its own technique asks for
 // nothing.
-Fractions allocateSplit(Allocation rule, const Moments& specular, const Moments& diffuse, TechniqueMask available,
-                        float minimum);
+template <size_t K>
+Fractions<K> allocateSplit(Allocation rule, const PerIntegrand<Moments<K>, K>& moments, TechniqueMask available,
+                           float minimum);
 
 // Whether every technique of `available` gets samples. A hit that has more techniques than its pixel's fractions know
 // of (at an edge) must not use them: light that only the missing one finds would be lost.
-constexpr bool covers(const Fractions& a, TechniqueMask available) {
-  for (int i = 0; i < kTechniques; ++i)
-    if ((available >> i & 1u) != 0 && !(a[i] > 0)) return false;
+template <size_t K>
+constexpr bool covers(const Fractions<K>& a, TechniqueMask available) {
+  for (size_t i = 0; i < K; ++i)
+    if (has(available, i) && !(a[i] > 0)) return false;
   return true;
 }
 
 // Restricts fractions to the techniques that a hit has, and renormalises.
-Fractions restrict(const Fractions& a, TechniqueMask available);
+template <size_t K>
+Fractions<K> restrict(const Fractions<K>& a, TechniqueMask available);
 
 // Number of samples of each technique at one hit: n points (j + u)/n over the cumulated fractions. Each count is n a_i
 // rounded up or down, their sum is n, and its mean over u uniform in [0, 1) is n a_i exactly.
-inline std::array<int, kTechniques> systematicCounts(const Fractions& a, int n, float u) {
-  std::array<int, kTechniques> counts{};
-  int last = kTechniques - 1;  // takes what is left; never a technique without a share
+template <size_t K>
+std::array<int, K> systematicCounts(const Fractions<K>& a, int n, float u) {
+  std::array<int, K> counts{};
+  size_t last = K - 1;  // takes what is left; never a technique without a share
   while (last > 0 && !(a[last] > 0)) --last;
   float cumulated = 0;
   int before = 0;
-  for (int i = 0; i < last; ++i) {
+  for (size_t i = 0; i < last; ++i) {
     cumulated += a[i];
     // points below the cumulated fraction: the number of j with (j + u)/n < cumulated, exact in double
     const int below = std::min(n, std::max(before, static_cast<int>(std::ceil(double(cumulated) * n - double(u)))));
@@ -73,18 +85,20 @@ inline std::array<int, kTechniques> systematicCounts(const Fractions& a, int n, 
 // share: with u evenly spread over the visits, systematicCounts then gives these very counts. Without it a pixel's
 // total of a technique is off by part of a sample, and where the techniques' means differ more than their samples
 // scatter, that part is the noise. Unchanged where visits are too few to hold the shares (rounding would be coarse).
-Fractions wholeCounts(const Fractions& a, int n, uint32_t visits);
+template <size_t K>
+Fractions<K> wholeCounts(const Fractions<K>& a, int n, uint32_t visits);
 
 // The weights of one hit, ready for use.
+template <size_t K>
 struct Mixture {
-  Fractions n{};       // expected counts n_i
-  Fractions a{};       // coefficients a_i; 0 for a technique that takes no samples
-  Fractions aOverN{};  // a_i/n_i
+  Fractions<K> n{};       // expected counts n_i
+  Fractions<K> a{};       // coefficients a_i; 0 for a technique that takes no samples
+  Fractions<K> aOverN{};  // a_i/n_i
   Weights rule = Weights::kBalance;
 
   Mixture() = default;
-  Mixture(const Fractions& fractions, int samples, Weights weights) : rule(weights) {
-    for (int i = 0; i < kTechniques; ++i) {
+  Mixture(const Fractions<K>& fractions, int samples, Weights weights) : rule(weights) {
+    for (size_t i = 0; i < K; ++i) {
       n[i] = fractions[i] * static_cast<float>(samples);
       if (!(n[i] > 0)) continue;
       a[i] = rule == Weights::kNonbalance ? 1 : n[i];
@@ -94,11 +108,11 @@ struct Mixture {
 
   // w_i / (n_i p_i): what f is to be multiplied by for a sample of technique i, where `used` techniques share the
   // integrand and p holds their densities at the sample (p[i] > 0).
-  float scale(int i, const Fractions& p, TechniqueMask used) const {
-    Fractions ap{};
+  float scale(size_t i, const Fractions<K>& p, TechniqueMask used) const {
+    Fractions<K> ap{};
     float sum = 0;
-    for (int k = 0; k < kTechniques; ++k) {
-      ap[k] = (used >> k & 1u) != 0 ? a[k] * p[k] : 0.0f;
+    for (size_t k = 0; k < K; ++k) {
+      ap[k] = has(used, k) ? a[k] * p[k] : 0.0f;
       sum += ap[k];
     }
     if (!(sum > 0)) return 0;  // every density underflowed: so did f
@@ -107,16 +121,16 @@ struct Mixture {
 
  private:
   // The heuristics that give more to the larger densities; ap: a_k p_k.
-  float scaleOfHeuristic(int i, const Fractions& p, const Fractions& ap) const {
+  float scaleOfHeuristic(size_t i, const Fractions<K>& p, const Fractions<K>& ap) const {
     float top = 0, sum = 0;
-    for (int k = 0; k < kTechniques; ++k) top = std::max(top, ap[k]);
+    for (size_t k = 0; k < K; ++k) top = std::max(top, ap[k]);
     if (rule == Weights::kPower) {
-      for (int k = 0; k < kTechniques; ++k) sum += (ap[k] / ap[i]) * (ap[k] / ap[i]);  // as ratios: p^2 overflows
+      for (size_t k = 0; k < K; ++k) sum += (ap[k] / ap[i]) * (ap[k] / ap[i]);  // as ratios: p^2 overflows
       return 1 / (sum * n[i] * p[i]);
     }
     const float least = (rule == Weights::kCutoff ? static_cast<float>(kCutoffRatio) : kTieRatio<float>)*top;
     if (ap[i] < least) return 0;
-    for (int k = 0; k < kTechniques; ++k) sum += ap[k] >= least ? ap[k] : 0;
+    for (size_t k = 0; k < K; ++k) sum += ap[k] >= least ? ap[k] : 0;
     return 1 / sum;
   }
 };

@@ -2,7 +2,9 @@
 #include "mis/candidates.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <vector>
 
 #include "mis/allocation.h"
 
@@ -10,57 +12,87 @@ namespace wardmis {
 
 namespace {
 
-// Fractions proportional to 1, 4 or 16, each once, the equal ones first.
-std::array<Fractions, kCandidates> proportions() {
+// Proportions of m techniques, the equal ones first: all of 1, 4 and 16 with a least one of 1; where these are more
+// than `most`, those in which one technique has more than the others, or one and the last, which is the light.
+std::vector<std::vector<float>> proportions(size_t m, size_t most) {
   constexpr float kLevels[] = {1, 4, 16};
-  std::array<Fractions, kCandidates> list;
-  size_t count = 0;
-  for (float c : kLevels)
-    for (float b : kLevels)
-      for (float a : kLevels)
-        if (std::min({a, b, c}) == 1) list[count++] = {a / (a + b + c), b / (a + b + c), c / (a + b + c)};
+  std::vector<std::vector<float>> list;
+  std::vector<size_t> digits(m, 0);
+  while (true) {
+    std::vector<float> a;
+    for (size_t digit : digits) a.push_back(kLevels[digit]);
+    if (*std::min_element(a.begin(), a.end()) == 1) list.push_back(a);
+    size_t i = 0;
+    while (i < m && ++digits[i] == std::size(kLevels)) digits[i++] = 0;
+    if (i == m) break;
+  }
+  if (list.size() <= most) return list;
+  const auto raised = [&](const std::vector<float>& a) {
+    return m - static_cast<size_t>(std::count(a.begin(), a.end(), 1.0f));
+  };
+  std::stable_sort(list.begin(), list.end(), [&](const auto& a, const auto& b) {
+    const auto rank = [&](const auto& x) { return raised(x) < 2 ? raised(x) : x.back() > 1 ? raised(x) : m + 1; };
+    return rank(a) < rank(b);
+  });
+  list.resize(most);
   return list;
 }
 
 }  // namespace
 
-CandidateLists::CandidateLists(int samplesPerHit) {
+template <size_t K>
+CandidateLists<K>::CandidateLists(int samplesPerHit) {
   constexpr uint32_t kParts = 4;  // of a sample
-  const std::array<Fractions, kCandidates> three = proportions();
-  for (unsigned mask = 1; mask <= kAllTechniques; ++mask)
-    for (size_t c = 0; c < kCandidates; ++c) {
-      Fractions a = restrict(three[c], TechniqueMask(mask));
-      if (c > 0) a = wholeCounts(a, samplesPerHit, kParts);
-      for (size_t k = 0; k < kTechniques; ++k) {
+  std::array<std::vector<std::vector<float>>, K + 1> lists;
+  for (size_t m = 1; m <= K; ++m) lists[m] = proportions(m, kCandidates<K>);
+  for (unsigned mask = 1; mask <= Techniques<K>::kAll; ++mask) {
+    const std::vector<std::vector<float>>& all = lists[static_cast<size_t>(std::popcount(mask))];
+    for (size_t c = 0; c < kCandidates<K>; ++c) {
+      const std::vector<float>& proportion = all[c < all.size() ? c : 0];  // spare ones are the equal counts again
+      Fractions<K> a{};
+      for (size_t k = 0, next = 0; k < K; ++k)
+        if (has(TechniqueMask(mask), k)) a[k] = proportion[next++];
+      a = restrict<K>(a, TechniqueMask(mask));
+      if (c > 0 && c < all.size()) a = wholeCounts<K>(a, samplesPerHit, kParts);
+      for (size_t k = 0; k < K; ++k) {
         const float n = a[k] * static_cast<float>(samplesPerHit), part = n - std::floor(n + 1e-4f);
         lists_[mask].a[k][c] = a[k];
         lists_[mask].spread[k][c] = std::max(0.0f, part * (1 - part)) / static_cast<float>(samplesPerHit);
       }
     }
+  }
 }
 
-Fractions chooseCandidate(const CandidateSums& sums, const GainScatter& surface, const CandidateList& list,
-                          const SampleCost& cost) {
+template <size_t K>
+Fractions<K> chooseCandidate(const CandidateSums<K>& sums, const GainScatter<K>& surface, const CandidateList<K>& list,
+                             const SampleCost<K>& cost) {
   constexpr float kSigmas = 2;  // standard errors of the gain
   constexpr double kSurfaceHits = 16;
   if (!(sums.hits >= kLeastHits)) return list.at(0);
   const auto objective = [&](int c) {
-    const Fractions a = list.at(c);
-    const float first = sums.mean[0][c], second = sums.mean[1][c];
-    const float means[] = {first, second, list.last(c, sums.integral, first, second)};
+    const auto mean = [&](size_t i) { return sums.mean[i][c]; };
     float squares = 0;
-    for (int i = 0; i < kTechniques; ++i) squares += list.spread[i][c] * means[i] * (means[i] / sums.hits);
-    return (sums.within[c] - squares) * cost.of(a[0], a[1], a[2]);
+    for (size_t i = 0; i < K; ++i) {
+      const float y = i + 1 < K ? mean(i) : list.last(c, sums.integral, mean);
+      squares += list.spread[i][c] * y * (y / sums.hits);
+    }
+    return (sums.within[c] - squares) * cost.of(list, c);
   };
   int best = 0;
   const float equal = objective(0);
   float most = 0;  // the largest gain that is sure, not the largest: that of many candidates is half luck
-  for (int c = 1; c < kCandidates; ++c) {
+  for (int c = 1; c < kCandidates<K>; ++c) {
     const double gain2 = double(sums.gain2[c]) + kSurfaceHits * surface.gain2[c] / surface.hits;
     const float sure = equal - objective(c) - kSigmas * static_cast<float>(std::sqrt(gain2));
     if (sure > most) best = c, most = sure;
   }
   return list.at(best);
 }
+
+#define WARDMIS_INSTANTIATE(K)                                                                                      \
+  template class CandidateLists<K>;                                                                                 \
+  template Fractions<K> chooseCandidate<K>(const CandidateSums<K>&, const GainScatter<K>&, const CandidateList<K>&, \
+                                           const SampleCost<K>&);
+WARDMIS_TECHNIQUE_COUNTS(WARDMIS_INSTANTIATE)
 
 }  // namespace wardmis

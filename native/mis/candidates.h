@@ -6,42 +6,65 @@
 
 #include <numeric>
 
-#include "mis/moments.h"
+#include "mis/technique.h"
 
 namespace wardmis {
 
-inline constexpr int kCandidates = 19;  // of three techniques: proportional to 1, 4 or 16, the first ones equal
+// Fractions proportional to 1, 4 or 16 of which the least is 1, as far as there are not too many.
+template <size_t K>
+inline constexpr int kCandidates = [] {
+  int all = 1, above = 1;
+  for (size_t i = 0; i < K; ++i) all *= 3, above *= 2;
+  return all - above < 33 ? all - above : 33;
+}();
 
+template <size_t K>
 struct CandidateList {
-  float a[kTechniques][kCandidates];  // fractions
+  float a[K][kCandidates<K>];  // fractions, equal ones first
   // Variance of a technique's count over the hits, whole or not, over the samples of a hit.
-  float spread[kTechniques][kCandidates];
-  Fractions at(int c) const { return {a[0][c], a[1][c], a[2][c]}; }
-  // E[y_i] of the last technique, from those of the others: sum_i a_i E[y_i] = integral f.
-  float last(int c, float integral, float first, float second) const {
-    return a[2][c] > 0 ? (integral - a[0][c] * first - a[1][c] * second) / a[2][c] : 0;
+  float spread[K][kCandidates<K>];
+
+  Fractions<K> at(int c) const {
+    Fractions<K> f;
+    for (size_t i = 0; i < K; ++i) f[i] = a[i][c];
+    return f;
+  }
+  // E[y_i] of the last technique, from `mean(i)`, those of the others: sum_i a_i E[y_i] = integral f.
+  template <class Mean>
+  float last(int c, float integral, Mean&& mean) const {
+    if (!(a[K - 1][c] > 0)) return 0;
+    for (size_t i = 0; i + 1 < K; ++i) integral -= a[i][c] * mean(i);
+    return integral / a[K - 1][c];
   }
 };
 // The candidates of a render with so many samples at a hit. All but the equal counts are rounded to quarters of a
 // sample, so that over 2^k hits a technique's points are a few powers of two: as Sobol's want to be.
+template <size_t K>
 class CandidateLists {
  public:
   explicit CandidateLists(int samplesPerHit);
   // Restricted to the techniques that a hit has.
-  const CandidateList& of(TechniqueMask available) const { return lists_[available & kAllTechniques]; }
+  const CandidateList<K>& of(TechniqueMask available) const { return lists_[available & Techniques<K>::kAll]; }
 
  private:
-  std::array<CandidateList, kAllTechniques + 1> lists_{};
+  std::array<CandidateList<K>, Techniques<K>::kAll + 1> lists_{};
 };
 
 // What a hit costs, in any unit: a share of the hit itself for each of its samples, and a sample of each technique.
+template <size_t K>
 struct SampleCost {
   float hit = 0;
-  Fractions technique{1, 1, 1};
+  Fractions<K> technique = [] {
+    Fractions<K> one;
+    one.fill(1);
+    return one;
+  }();
 
-  // Of a sample, in mean over fractions a.
-  float of(float a0, float a1, float a2) const {
-    return hit + a0 * technique[0] + a1 * technique[1] + a2 * technique[2];
+  // Of a sample, in mean over candidate c's fractions.
+  float of(const CandidateList<K>& list, int c) const {
+    float sum = hit;
+    for (size_t i = 0; i < K; ++i) sum += list.a[i][c] * technique[i];
+    return sum;
   }
 };
 
@@ -49,16 +72,18 @@ struct SampleCost {
 // the scatter at one hit is what sharing can change: Var[y_i | hit] = E[y_i^2] - E[y_i | hit]^2. The square of the mean
 // is the product of two estimates of it from samples of their own. Where counts are not whole numbers at each hit, the
 // scatter of E[y_i | hit] over the hits counts, too: spread_i (E[E[y_i | hit]^2] - E[y_i]^2).
+template <size_t K>
 struct CandidateSums {
-  float within[kCandidates]{};  // sum_i a_i Var[y_i | hit] + spread_i E[y_i | hit]^2
-  float gain2[kCandidates]{};   // squared difference of its product with the cost from that of equal counts
-  float mean[kTechniques - 1][kCandidates]{};  // E[y_i]; the last follows
+  static constexpr int kCount = kCandidates<K>;
+  float within[kCount]{};       // sum_i a_i Var[y_i | hit] + spread_i E[y_i | hit]^2
+  float gain2[kCount]{};        // squared difference of its product with the cost from that of equal counts
+  float mean[K - 1][kCount]{};  // E[y_i]; the last follows
   float integral = 0, hits = 0;
 
   CandidateSums& operator+=(const CandidateSums& b) {
-    for (int c = 0; c < kCandidates; ++c) {
+    for (int c = 0; c < kCount; ++c) {
       within[c] += b.within[c], gain2[c] += b.gain2[c];
-      for (int i = 0; i < kTechniques - 1; ++i) mean[i][c] += b.mean[i][c];
+      for (size_t i = 0; i < K - 1; ++i) mean[i][c] += b.mean[i][c];
     }
     integral += b.integral, hits += b.hits;
     return *this;
@@ -66,11 +91,12 @@ struct CandidateSums {
 };
 
 // The scatter of the gains over all hits of a surface: what a few of them are not likely to meet.
+template <size_t K>
 struct GainScatter {
-  double gain2[kCandidates]{}, hits = 0;
+  double gain2[kCandidates<K>]{}, hits = 0;
 
-  GainScatter& operator+=(const CandidateSums& b) {
-    for (int c = 0; c < kCandidates; ++c) gain2[c] += double(b.gain2[c]);
+  GainScatter& operator+=(const CandidateSums<K>& b) {
+    for (int c = 0; c < kCandidates<K>; ++c) gain2[c] += double(b.gain2[c]);
     hits += double(b.hits);
     return *this;
   }
@@ -80,59 +106,66 @@ struct GainScatter {
 inline constexpr int kSets = 2;
 
 // One hit: the samples of its integrands, then addTo() the sums.
+template <size_t K>
 class CandidateHit {
  public:
-  explicit CandidateHit(const CandidateList& list) : list_(list) {}
+  explicit CandidateHit(const CandidateList<K>& list) : list_(list) {}
 
   // f, p, expected counts n (of both sets) and techniques `used` as for Moments::add.
-  void add(float f, const Fractions& p, const Fractions& n, TechniqueMask used, int set) {
+  void add(float f, const Fractions<K>& p, const Fractions<K>& n, TechniqueMask used, int set) {
     if (!(f > 0)) return;
-    Fractions own{};
+    Fractions<K> own{};
     float q = 0;
-    for (int k = 0; k < kTechniques; ++k)
-      if ((used >> k & 1u) != 0) own[k] = p[k], q += n[k] * p[k];
-    const float w = f / q, f2 = f * w, w0 = own[0] * w, w1 = own[1] * w;
+    for (size_t k = 0; k < K; ++k)
+      if (has(used, k)) own[k] = p[k], q += n[k] * p[k];
+    const float w = f / q, f2 = f * w;
     integral_[set] += w;
-    for (int c = 0; c < kCandidates; ++c) {
-      const float r = 1 / (list_.a[0][c] * own[0] + list_.a[1][c] * own[1] + list_.a[2][c] * own[2]);
+    for (int c = 0; c < kCount; ++c) {
+      float mixture = list_.a[0][c] * own[0];
+      for (size_t k = 1; k < K; ++k) mixture += list_.a[k][c] * own[k];
+      const float r = 1 / mixture;
       value_[c] += f2 * r;
-      mean_[set][0][c] += w0 * r, mean_[set][1][c] += w1 * r;
+      for (size_t k = 0; k < K - 1; ++k) mean_[set][k][c] += own[k] * w * r;
     }
   }
-  // A light sample that serves two integrands: E[(f_s/q_s + f_d/q_d)^2] has their product twice, with the light's a.
-  void addBoth(float fs, float fd, const Fractions& p, const Fractions& n) {
-    if (!(fs > 0) || !(fd > 0)) return;
-    const float w = 2 * fs * (fd / (n[0] * p[0] + n[1] * p[1] + n[2] * p[2]));
-    for (int c = 0; c < kCandidates; ++c) {
-      const float light = list_.a[2][c] * p[2];  // of a far edge of a light it may be 1e-25: its square is no float
-      value_[c] += light / (list_.a[0][c] * p[0] + light) * (w / (list_.a[1][c] * p[1] + light));
+  // A light sample that serves the integrands of techniques i and k: E[(f_i/q_i + f_k/q_k)^2] has their product twice,
+  // with the light's a.
+  void addBoth(size_t i, float fi, size_t k, float fk, const Fractions<K>& p, const Fractions<K>& n) {
+    constexpr size_t kLight = Techniques<K>::kLight;
+    if (!(fi > 0) || !(fk > 0)) return;
+    const float w = 2 * fi * (fk / (n[i] * p[i] + n[k] * p[k] + n[kLight] * p[kLight]));
+    for (int c = 0; c < kCount; ++c) {
+      const float light =
+          list_.a[kLight][c] * p[kLight];  // of a light's far edge it may be 1e-25: its square is no float
+      value_[c] += light / (list_.a[i][c] * p[i] + light) * (w / (list_.a[k][c] * p[k] + light));
     }
   }
-  void addTo(CandidateSums& sums, const SampleCost& cost) const {
-    const float all = std::accumulate(value_, value_ + kCandidates, 0.0f);
+  void addTo(CandidateSums<K>& sums, const SampleCost<K>& cost) const {
+    const float all = std::accumulate(value_, value_ + kCount, 0.0f);
     if (!(all < 1e18f)) return;  // its square, or it, is beyond float: it would be all that a surface says
     float equal = 0;
-    for (int c = 0; c < kCandidates; ++c) {
-      const float a[] = {list_.a[0][c], list_.a[1][c], list_.a[2][c]};
+    for (int c = 0; c < kCount; ++c) {
       float last[kSets];
-      for (int s = 0; s < kSets; ++s) last[s] = list_.last(c, integral_[s], mean_[s][0][c], mean_[s][1][c]);
-      // each set has half of the sum
-      const float square[] = {4 * mean_[0][0][c] * mean_[1][0][c], 4 * mean_[0][1][c] * mean_[1][1][c],
-                              4 * last[0] * last[1]};
+      for (int s = 0; s < kSets; ++s) last[s] = list_.last(c, integral_[s], [&](size_t i) { return mean_[s][i][c]; });
       float within = value_[c];
-      for (int i = 0; i < kTechniques; ++i) within -= (a[i] - list_.spread[i][c]) * square[i];
-      const float priced = within * cost.of(a[0], a[1], a[2]);
+      for (size_t i = 0; i < K; ++i) {
+        // each set has half of the sum
+        const float square = 4 * (i + 1 < K ? mean_[0][i][c] * mean_[1][i][c] : last[0] * last[1]);
+        within -= (list_.a[i][c] - list_.spread[i][c]) * square;
+      }
+      const float priced = within * cost.of(list_, c);
       if (c == 0) equal = priced;
       sums.within[c] += within;
       sums.gain2[c] += (equal - priced) * (equal - priced);
-      sums.mean[0][c] += mean_[0][0][c] + mean_[1][0][c], sums.mean[1][c] += mean_[0][1][c] + mean_[1][1][c];
+      for (size_t i = 0; i < K - 1; ++i) sums.mean[i][c] += mean_[0][i][c] + mean_[1][i][c];
     }
     sums.integral += integral_[0] + integral_[1], sums.hits += 1;
   }
 
  private:
-  const CandidateList& list_;
-  float value_[kCandidates]{}, mean_[kSets][kTechniques - 1][kCandidates]{}, integral_[kSets]{};
+  static constexpr int kCount = kCandidates<K>;
+  const CandidateList<K>& list_;
+  float value_[kCount]{}, mean_[kSets][K - 1][kCount]{}, integral_[kSets]{};
 };
 
 inline constexpr int kLeastHits = 8;  // fewer say nothing of their own noise
@@ -141,7 +174,8 @@ inline constexpr int kLeastHits = 8;  // fewer say nothing of their own noise
 // the largest; equal counts where none is above nothing, or where hits are too few to tell. The errors are those of
 // `sums` and of 16 more hits with the scatter of the whole `surface`, on which `sums` lies: rare bright samples that a
 // neighbourhood did not meet show elsewhere on it.
-Fractions chooseCandidate(const CandidateSums& sums, const GainScatter& surface, const CandidateList& list,
-                          const SampleCost& cost);
+template <size_t K>
+Fractions<K> chooseCandidate(const CandidateSums<K>& sums, const GainScatter<K>& surface, const CandidateList<K>& list,
+                             const SampleCost<K>& cost);
 
 }  // namespace wardmis

@@ -10,9 +10,10 @@
 #include <limits>
 #include <vector>
 
+#include "mis/technique.h"
+
 namespace wardmis {
 
-inline constexpr int kMaxTechniques = 8;
 using Densities = std::array<double, kMaxTechniques>;  // one number a technique
 
 struct Point {

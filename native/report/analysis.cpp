@@ -452,22 +452,20 @@ class Reporter {
     Counts sum;
     double cpu = 0;
     for (size_t i = 0; i < m.runs->size(); ++i) sum += (*m.runs)[i].counts, cpu += m.cpu(i);
-    const double samples = double(sum.samples[0]) + double(sum.samples[1]) + double(sum.samples[2]);
-    const double rays = double(sum.cameraRays) + double(sum.lobeRays) + double(sum.cosineRays) + double(sum.shadowRays);
+    const double samples = double(Counts::sum(sum.samples)), rays = double(sum.allRays());
     const double n = double(m.runs->size());
+    json bySamples = json::object(), byRays{{"camera", double(sum.cameraRays) / n}};
+    const std::vector<std::string>& names = e_.survey.techniqueNames;
+    for (size_t t = 0; t < names.size(); ++t) {
+      bySamples[names[t]] = double(sum.samples[t]) / n;
+      byRays[t + 1 == names.size() ? "shadow" : names[t]] = double(sum.rays[t]) / n;
+    }
     return {{"ns_per_sample", samples > 0 ? json(1e9 * cpu / samples) : json()},
             {"ns_per_path", 1e9 * cpu / double(sum.cameraRays)},
             {"rays_per_path", rays / double(sum.cameraRays)},
             {"evaluations", samples / n},
-            {"samples",
-             {{"lobe", double(sum.samples[kLobe]) / n},
-              {"cosine", double(sum.samples[kCosine]) / n},
-              {"light", double(sum.samples[kLight]) / n}}},
-            {"rays",
-             {{"camera", double(sum.cameraRays) / n},
-              {"lobe", double(sum.lobeRays) / n},
-              {"cosine", double(sum.cosineRays) / n},
-              {"shadow", double(sum.shadowRays) / n}}}};
+            {"samples", std::move(bySamples)},
+            {"rays", std::move(byRays)}};
   }
 
   // The runs' own estimate of their variance over what the seeds show.
@@ -523,25 +521,26 @@ class Reporter {
     const RenderSettings& s = m.configuration->settings;
     const size_t pixels = m.predicted.size();
     std::vector<int> present(pixels);
-    for (size_t t = 0; t < kTechniques; ++t)
-      for (size_t i = 0; i < m.fractions[t].size(); ++i) present[i] += (e_.survey.pixels[i].techniques >> t & 1) != 0;
+    const size_t techniques = m.fractions.size();
+    for (size_t t = 0; t < techniques; ++t)
+      for (size_t i = 0; i < m.fractions[t].size(); ++i) present[i] += has(e_.survey.pixels[i].techniques, t);
     size_t sampled = 0, clamped = 0, starved = 0;
-    std::array<double, kTechniques> mean{};
+    std::vector<double> mean(techniques);
     const double spp = double(e_.checkpoints.back());
     const double pilot = pilotApart(s) > 0 ? 0 : std::min(double(s.pilotSpp), spp / 2);
     for (size_t i = 0; i < pixels; ++i) {
       double sum = 0;
-      for (size_t t = 0; t < kTechniques; ++t) sum += m.fractions[t].empty() ? 0 : double(m.fractions[t][i]);
+      for (size_t t = 0; t < techniques; ++t) sum += m.fractions[t].empty() ? 0 : double(m.fractions[t][i]);
       if (!(sum > 0)) continue;
       ++sampled;
       bool least = false, none = false;
       // at the least share after the pilot, whose counts are equal
       const double limit = (pilot / std::max(1, present[i]) + (spp - pilot) * double(s.minFraction)) / spp * 1.02;
-      for (size_t t = 0; t < kTechniques; ++t) {
+      for (size_t t = 0; t < techniques; ++t) {
         if (m.fractions[t].empty()) continue;
         const double a = double(m.fractions[t][i]);
         mean[t] += a;
-        if ((e_.survey.pixels[i].techniques >> t & 1) == 0) continue;
+        if (!has(e_.survey.pixels[i].techniques, t)) continue;
         none = none || a <= 0;
         least = least || (a > 0 && a <= limit);
       }
@@ -549,8 +548,8 @@ class Reporter {
       starved += none ? 1 : 0;
     }
     if (sampled == 0) return {};
-    for (size_t t = 0; t < kTechniques; ++t)
-      if (!m.fractions[t].empty()) j[kTechniqueNames[t]] = mean[t] / double(sampled);
+    for (size_t t = 0; t < techniques; ++t)
+      if (!m.fractions[t].empty()) j[e_.survey.techniqueNames[t]] = mean[t] / double(sampled);
     const bool hasLeast = needsMoments(s.allocation) && s.allocation != Allocation::kAuto;
     j["clamped"] = hasLeast ? json(double(clamped) / double(pixels)) : json();
     j["starved"] = double(starved) / double(pixels);
@@ -685,9 +684,9 @@ class Reporter {
 
   json techniques() const {
     json all = json::array();
-    for (size_t t = 0; t < kTechniques; ++t) {
-      if ((e_.survey.techniques >> t & 1) == 0) continue;
-      all.push_back({{"name", kTechniqueNames[t]},
+    for (size_t t = 0; t < e_.survey.techniqueNames.size(); ++t) {
+      if (!has(e_.survey.techniques, t)) continue;
+      all.push_back({{"name", e_.survey.techniqueNames[t]},
                      {"ns_per_sample", 1e9 * e_.sampleCost[t]},
                      {"second_moment", e_.survey.secondMoment[t]},
                      {"variance", e_.survey.variance[t]},

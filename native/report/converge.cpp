@@ -298,9 +298,8 @@ class Study {
   }
 
   void describeKernel(Configuration& c) const {
-    const RenderSetup setup(built_, c.settings);
-    c.kernel = describe(setup.kernelNeeds);
-    c.leftOut = leftOut(built_.scene, setup.needs, built_.emitters);
+    c.kernel = describe(kernelNeeds(built_, c.settings));
+    c.leftOut = leftOut(built_.scene, needs(built_, c.settings), built_.emitters);
   }
 
   void references(std::optional<Reference> given) {
@@ -428,7 +427,7 @@ class Study {
         };
         const FilmBuffer film = render(built_, s, st, watch);
         if (stopped()) return;
-        ExrImage image = toPasses(film, {{"Combined", "RGBA", "combined"}}, kLayer, built_.scene.zUp);
+        ExrImage image = toPasses(film, {{"Combined", "RGBA", "combined"}}, {}, kLayer, built_.scene.zUp);
         image.attributes.emplace_back("wardmis:seconds", fmt::format("{}", st.pilotSeconds + st.renderSeconds));
         writeExr(chunk, image, true);
         found = readExr(chunk);
@@ -528,7 +527,7 @@ class Study {
       at.spp = film.samples, at.time = time;
       at.error = compareImages(toRgb(film), reference);
       at.cameraRays = n.cameraRays;
-      at.rays = n.rays();
+      at.rays = n.allRays();
       run.checkpoints.push_back(at);
     };
     RenderObserver watch;
@@ -553,9 +552,9 @@ class Study {
     run.counts = st.counts;
     run.image = fs::path(file).replace_extension(".exr");
     std::vector<PassInfo> passes;
-    for (const PassInfo& p : passesFor(st.techniques))
+    for (const PassInfo& p : passesFor(st.techniques, st.techniqueNames))
       if (p.group == "combined" || p.group == "variance" || p.group == "allocation") passes.push_back(p);
-    const ExrImage image = toPasses(film, passes, kLayer, built_.scene.zUp);
+    const ExrImage image = toPasses(film, passes, st.techniqueNames, kLayer, built_.scene.zUp);
     run.flip = flipError(rgbOf(image, run.image), reference);
     writeExr(run.image, image, true);
     writeFile(file, toJson(run).dump(2) + '\n');  // last: a run without it is done again

@@ -19,7 +19,8 @@ std::string estimates(const RenderSettings& s) {
   const PathLimits limits = s.limits();
   if (!limits.bounce()) return "direct light";
   std::string text = fmt::format("paths, depth {}", limits.depth);
-  for (const auto& [kind, bounces] : {std::pair{"diffuse", limits.bounces[kCosine]}, {"glossy", limits.bounces[kLobe]}})
+  for (const auto& [kind, bounces] :
+       {std::pair{"diffuse", limits.bounces[kDiffuseBounce]}, {"glossy", limits.bounces[kGlossyBounce]}})
     if (bounces < limits.depth - 1) text += fmt::format(", {} {} bounces", bounces, kind);
   return text;
 }
@@ -57,7 +58,8 @@ json toJson(const Run& run) {
           {"calibration_seconds", run.calibration},
           {"load", run.load},
           {"samples", n.samples},
-          {"rays", {n.cameraRays, n.lobeRays, n.cosineRays, n.shadowRays}},
+          {"camera_rays", n.cameraRays},
+          {"rays", n.rays},
           {"dropped", {n.rare.nan, n.rare.infinite, n.rare.negative}},
           {"checkpoints", std::move(checkpoints)}};
 }
@@ -80,9 +82,8 @@ Run runFromJson(const json& j) {
   if (!j.at("flip").is_null()) run.flip = measured(j.at("flip"));
   run.calibration = measured(j.at("calibration_seconds")), run.load = measured(j.at("load"));
   j.at("samples").get_to(run.counts.samples);
-  const auto rays = j.at("rays").get<std::array<uint64_t, 4>>();
-  run.counts.cameraRays = rays[0], run.counts.lobeRays = rays[1];
-  run.counts.cosineRays = rays[2], run.counts.shadowRays = rays[3];
+  run.counts.cameraRays = j.at("camera_rays");
+  j.at("rays").get_to(run.counts.rays);
   const auto dropped = j.at("dropped").get<std::array<uint64_t, 3>>();
   run.counts.rare.nan = dropped[0], run.counts.rare.infinite = dropped[1], run.counts.rare.negative = dropped[2];
   for (const json& c : j.at("checkpoints")) {

@@ -79,7 +79,7 @@ struct Experiment {
   Survey survey;
   std::optional<double> target;
   bool complete = false;
-  std::array<double, kTechniques> sampleCost{};  // CPU seconds of one sample of each technique
+  std::array<double, kMaxTechniques> sampleCost{};  // CPU seconds of one sample of each technique
   std::string started, ended, command, sceneHash;
   int threads = 0;
   const BuiltScene* built = nullptr;  // knows the names of what each pixel shows

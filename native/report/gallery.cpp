@@ -57,15 +57,17 @@ std::vector<Picture> gallery(const Experiment& e, const std::vector<Measured>& m
     if (m.configuration->external) continue;
     std::vector<float> shares(3 * static_cast<size_t>(w) * static_cast<size_t>(h));
     int present = 0;
-    for (size_t t = 0; t < kTechniques; ++t) {
+    const size_t techniques = m.fractions.size();  // the last two are cosine and light
+    for (size_t t = 0; t < techniques; ++t) {
       present += m.fractions[t].empty() ? 0 : 1;
-      for (size_t i = 0; i < m.fractions[t].size(); ++i) shares[3 * i + t] = m.fractions[t][i];
+      const size_t channel = t + 2 < techniques ? 0 : t + 3 - techniques;
+      for (size_t i = 0; i < m.fractions[t].size(); ++i) shares[3 * i + channel] += m.fractions[t][i];
     }
     const std::string& name = m.configuration->name;
     if (present > 1)
       all.push_back(
           sharesPicture({name + "/allocation", name + ", allocation", "allocation", name,
-                         "Shares of the samples at first hits: red the lobe, green the cosine, blue the light."},
+                         "Shares of the samples at first hits: red the lobes, green the cosine, blue the light."},
                         shares, w, h));
   }
   for (size_t k = 0; k < measured.size(); ++k) {

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "film/exr.h"
+#include "integrate/passes.h"
 #include "math/error.h"
 
 namespace wardmis {
@@ -109,8 +110,9 @@ Measured measure(const Experiment& e, size_t k, const std::vector<Group>& groups
     for (const char c : {'R', 'G', 'B'})
       if (const auto* v = exr.channel(fmt::format("ViewLayer.Variance.{}", c)))
         for (size_t i = 0; i < pixels; ++i) m.predicted[i] += (*v)[i] / static_cast<float>(3 * n);
-    for (size_t t = 0; t < kTechniques; ++t)
-      if (const auto* v = exr.channel(fmt::format("ViewLayer.Allocation {}.X", kTechniqueLabels[t]))) {
+    m.fractions.resize(e.survey.techniqueNames.size());
+    for (size_t t = 0; t < m.fractions.size(); ++t)
+      if (const auto* v = exr.channel(fmt::format("ViewLayer.{}.X", allocationPass(e.survey.techniqueNames[t])))) {
         m.fractions[t].resize(pixels);
         for (size_t i = 0; i < pixels; ++i) m.fractions[t][i] += (*v)[i] / static_cast<float>(n);
       }

@@ -27,11 +27,11 @@ struct Measured {
   const std::vector<Run>* runs = nullptr;
   const Reference* reference = nullptr;
   SeedStatistics seeds;
-  std::vector<float> predicted;                           // per pixel: variance that the runs claim; empty: unknown
-  std::array<std::vector<float>, kTechniques> fractions;  // per pixel; empty where the technique is not there
-  RgbImage first;                                         // of the first seed
-  std::vector<float> rmsError;                            // per pixel: of the relative error, over the seeds
-  std::vector<std::vector<Metrics>> groups;               // of each group, of each seed; their floors are still in them
+  std::vector<float> predicted;               // per pixel: variance that the runs claim; empty: unknown
+  std::vector<std::vector<float>> fractions;  // by technique, per pixel; empty where it is not there
+  RgbImage first;                             // of the first seed
+  std::vector<float> rmsError;                // per pixel: of the relative error, over the seeds
+  std::vector<std::vector<Metrics>> groups;   // of each group, of each seed; their floors are still in them
   std::vector<uint8_t> wins;  // against the baseline, 0 better, 1 worse, 2 undecided; empty: not compared
 
   // Processor seconds of a run; wall seconds where the renderer does not tell them.

@@ -37,7 +37,7 @@ void StudyInput::check() const {
     usage("the planar reduction knows one alpha only", "give --alpha, or --mode full");
   if (mode == StudyMode::kPlanar && !ward() && thetaO != 0)
     usage("the paper's planar Lafortune-Phong holds at normal incidence", "give --theta-o 0, or --mode full");
-  if (techniques.size() < 2 || techniques.size() > kTechniques)
+  if (techniques.size() < 2 || techniques.size() > kStudyTechniques)
     usage(fmt::format("{} techniques", techniques.size()), "give two or three of lobe, cosine, uniform");
   for (size_t i = 0; i < techniques.size(); ++i)
     for (size_t k = 0; k < i; ++k)

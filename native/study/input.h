@@ -13,6 +13,7 @@ namespace wardmis {
 
 enum class StudyBrdf : uint8_t { kLafortunePhong, kWard, kWardDur, kWardGmd };
 enum class StudyMode : uint8_t { kFull, kPlanar };
+inline constexpr size_t kStudyTechniques = 3;
 enum class StudyTechnique : uint8_t { kLobe, kCosine, kUniform };  // the BRDF's own lobe; cos/pi; 1/(2 pi)
 
 struct StudyInput {

@@ -169,18 +169,19 @@ double progressive(const Strategy& s, const Trial& t, int samples, Counts& last)
 
 // The choice of a render's `auto`, from pairs of each technique's samples as it has them at a hit.
 Densities chosen(const Trial& t, int pairs, int rest, const Densities* cost) {
-  const CandidateLists lists(rest);
+  constexpr size_t K = kStudyTechniques;
+  const CandidateLists<K> lists(rest);
   const auto mask = static_cast<TechniqueMask>((1u << t.techniques) - 1);
-  const CandidateList& list = lists.of(mask);
-  Fractions n{};
-  SampleCost price;
+  const CandidateList<K>& list = lists.of(mask);
+  Fractions<K> n{};
+  SampleCost<K> price;
   for (int i = 0; i < t.techniques; ++i) {
     n[at(i)] = kSets;
     if (cost != nullptr) price.technique[at(i)] = static_cast<float>((*cost)[at(i)]);
   }
-  CandidateSums sums;
+  CandidateSums<K> sums;
   for (int pair = 0; pair < pairs; ++pair) {
-    CandidateHit hit(list);
+    CandidateHit<K> hit(list);
     for (int i = 0; i < t.techniques; ++i)
       for (int set = 0; set < kSets; ++set) {
         const int j = kSets * pair + set;
@@ -189,8 +190,8 @@ Densities chosen(const Trial& t, int pairs, int rest, const Densities* cost) {
       }
     hit.addTo(sums, price);
   }
-  GainScatter all;
-  const Fractions a = chooseCandidate(sums, all += sums, list, price);
+  GainScatter<K> all;
+  const Fractions<K> a = chooseCandidate<K>(sums, all += sums, list, price);
   return {double(a[0]), double(a[1]), double(a[2])};
 }
 

@@ -191,7 +191,7 @@
   function shareBar(parts) {
     const text = parts.map(([name, x]) => `${name} ${percent(x)}`).join(", ");
     return h("span", { class: "share", role: "img", "aria-label": text, title: text },
-      parts.map(([, x, look]) => h("span", { style: `width:${100 * x}%;${look.startsWith("s") ? "" : `background:${look}`}`, class: look.startsWith("s") ? look : null })));
+      parts.map(([, x, look]) => h("span", { style: `width:${100 * x}%;background:${look}` })));
   }
 
   // What is said of each configuration in sentences.
@@ -597,7 +597,7 @@
       const found = (image.classes || [])[png.at(x, y, 0)];
       return where + (found ? found.name : "none");
     }
-    const names = image.group === "allocation" ? ["lobe", "cosine", "light"] : ["R", "G", "B"];
+    const names = image.group === "allocation" ? ["lobes", "cosine", "light"] : ["R", "G", "B"];
     return where + names.map((name, c) => `${name} ${percent(png.at(x, y, c) / 255)}`).join("   ");
   }
 
@@ -691,7 +691,7 @@
           h("div", { class: "ends" }, ends.map((x) => h("span", {}, number(x)))));
       }
       const entries = image.kind === "classes" ? (image.classes || []).map((k) => [k.name, k.colour])
-        : image.kind === "rgb" && image.group === "allocation" ? [["lobe", "#f00"], ["cosine", "#0f0"], ["light", "#00f"]] : [];
+        : image.kind === "rgb" && image.group === "allocation" ? [["lobes", "#f00"], ["cosine", "#0f0"], ["light", "#00f"]] : [];
       return entries.length ? h("div", { class: "key" }, entries.map(([label, colour]) => h("span", {}, h("i", { style: `background:${colour}` }), label))) : null;
     }
 
@@ -1001,13 +1001,18 @@
 
   function allocationSection() {
     const of = configurations.filter((c) => c.allocation), counted = configurations.filter((c) => c.counts);
+    const techniques = [...new Set(of.flatMap((c) => Object.keys(c.allocation)))].filter((k) => k !== "clamped" && k !== "starved");
+    const rank = (k) => (k === "light" ? 2 : k === "cosine" ? 1 : 0);
+    techniques.sort((a, b) => rank(a) - rank(b) || a.localeCompare(b));
+    const title = (k) => k[0].toUpperCase() + k.slice(1);
+    const shade = (n) => `color-mix(in srgb, var(--ink) ${Math.round(100 - (80 * n) / Math.max(1, techniques.length - 1))}%, var(--paper))`;
     const allocation = of.length ? [
       read("Where the samples went, averaged over the pixels. Clamped: the share of pixels in which a technique is held at its least share; starved: in which one gets no sample at all."),
-      table("mean allocation", [["Configuration"], ["Lobe", "number"], ["Cosine", "number"], ["Light", "number"], [""], ["Clamped", "number"], ["Starved", "number"]],
-        of.map((c) => [named(c), percent(c.allocation.lobe), percent(c.allocation.cosine), percent(c.allocation.light),
-          { is: shareBar([["lobe", c.allocation.lobe || 0, "s0"], ["cosine", c.allocation.cosine || 0, "s1"], ["light", c.allocation.light || 0, "s2"]]), class: "bare" },
+      table("mean allocation", [["Configuration"], ...techniques.map((k) => [title(k), "number"]), [""], ["Clamped", "number"], ["Starved", "number"]],
+        of.map((c) => [named(c), ...techniques.map((k) => percent(c.allocation[k])),
+          { is: shareBar(techniques.map((k, n) => [k, c.allocation[k] || 0, shade(n)])), class: "bare" },
           percent(c.allocation.clamped), percent(c.allocation.starved)])),
-      h("div", { class: "key" }, ["lobe", "cosine", "light"].map((k, n) => h("span", {}, h("i", { class: `s${n}` }), k))),
+      h("div", { class: "key" }, techniques.map((k, n) => h("span", {}, h("i", { style: `background:${shade(n)}` }), k))),
     ] : null;
     const any = counted.some((c) => c.counts.nan + c.counts.infinite + c.counts.negative > 0);
     const count = (n) => (n > 0 ? h("span", { class: "flag" }, integer(n)) : integer(n));

@@ -29,29 +29,29 @@ TYPED_TEST(Surfaces, BatchEqualsScalar) {
       s.ax = static_cast<float>(random.logUniform(0.02, 2)), s.ay = static_cast<float>(random.logUniform(0.02, 2));
       const Vec3<double> o = round % 10 == 0 ? random.direction() : random.above();  // also from below
       const Vec3<T> wo{T(o.x), T(o.y), T(o.z)};
-      Batch<T, kCapacity> batch;
+      LobeBatch<T, 1, kCapacity> batch;
       const int n = random.integer(0, kCapacity);
       for (int j = 0; j < kCapacity; ++j) {
         const Vec3<double> i = random.direction();
         batch.set(j,
                   j % 5 == 0 ? wardSample(wo, T(s.ax), T(s.ay), random.square<T>()) : Vec3<T>{T(i.x), T(i.y), T(i.z)});
-        batch.specular[j] = batch.lobe[j] = T(-7);
+        batch.fCos[0][j] = batch.pdf[0][j] = T(-7);
       }
-      evaluate(s, wo, batch, n);
+      s.evaluateLobe(0, wo, batch, n);
       for (int j = 0; j < kCapacity; ++j) {
         if (j >= n) {
-          EXPECT_TRUE(batch.specular[j] == T(-7) && batch.lobe[j] == T(-7)) << "written past n";
+          EXPECT_TRUE(batch.fCos[0][j] == T(-7) && batch.pdf[0][j] == T(-7)) << "written past n";
           continue;
         }
         const Vec3<T> wi = batch.wi(j);
-        const WardValue<T> w = ward(v.type, wi, wo, T(s.ax), T(s.ay)), single = evaluateWard(s, wi, wo);
-        EXPECT_EQ(batch.specular[j], w.fCos);
-        EXPECT_EQ(batch.lobe[j], w.pdf);
+        const WardValue<T> w = ward(v.type, wi, wo, T(s.ax), T(s.ay)), single = s.evaluateLobe(0, wi, wo);
+        EXPECT_EQ(batch.fCos[0][j], w.fCos);
+        EXPECT_EQ(batch.pdf[0][j], w.pdf);
         EXPECT_EQ(single.fCos, w.fCos);
         EXPECT_EQ(single.pdf, w.pdf);
         if (wi.z <= 0 || wo.z <= 0) {
-          EXPECT_EQ(batch.specular[j], 0);
-          EXPECT_EQ(batch.lobe[j], 0);
+          EXPECT_EQ(batch.fCos[0][j], 0);
+          EXPECT_EQ(batch.pdf[0][j], 0);
         }
       }
     }

@@ -65,7 +65,7 @@ Measured estimate(const Scene& scene, SamplerType type) {
   for (uint32_t batch = 0; batch < kBatches; ++batch) {
     double mean = 0;
     for (uint32_t k = 0; k < kPoints; ++k) {
-      const Vec3f d = sky.sample(sampler.getChoice(sampler.pixelKey(batch, 0), kLightPoint, k));
+      const Vec3f d = sky.sample(sampler.getChoice(sampler.pixelKey(batch, 0), 5, k));
       if (d.z > 0) mean += double(luminance(sky.radiance(d)) * d.z / sky.pdf(d));
     }
     mean /= kPoints;

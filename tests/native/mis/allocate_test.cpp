@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fractions from moments: the golden file's exact ones, clamps, and moments that say nothing.
+// Fractions<3> from moments: the golden file's exact ones, clamps, and moments that say nothing.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -14,10 +14,10 @@ using namespace test;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
 
-double sum(const Fractions& a) { return double(a[0]) + double(a[1]) + double(a[2]); }
+double sum(const Fractions<3>& a) { return double(a[0]) + double(a[1]) + double(a[2]); }
 
 void expectFractions(const WardCase& c, Allocation rule, const char* key, const std::array<double, 3>& tolerance) {
-  const Fractions a = allocate(rule, exactMoments(c), c.used, 0);
+  const Fractions<3> a = allocate<3>(rule, exactMoments(c), c.used, 0);
   for (size_t i = 0; i < static_cast<size_t>(c.techniques); ++i)
     EXPECT_NEAR(double(a[i]), c.expect["fractions"][key][i].get<double>(), tolerance[i]) << key << " technique " << i;
   EXPECT_NEAR(sum(a), 1, 1e-6);
@@ -27,7 +27,7 @@ void checkGolden(const WardCase& c) {
   SCOPED_TRACE(c.input.dump());
   std::array<double, 3> equal{}, second{}, variance{};
   double cancellation = 0;
-  const Moments m = exactMoments(c);
+  const Moments<3> m = exactMoments(c);
   for (size_t i = 0; i < static_cast<size_t>(c.techniques); ++i) {
     const double a = c.expect["fractions"]["inv_m2"][i].get<double>();
     equal[i] = 1e-7;
@@ -72,15 +72,15 @@ TEST(Allocate, VarianceRuleTiesWithEqual) {
       const double nVar = c.expect["NVar"][def7].get<double>();
       EXPECT_NEAR(c.expect["NVar"][def8].get<double>(), nVar, 1e-9 * nVar);
       if (c.techniques != 3) continue;
-      const Fractions a = allocate(Allocation::kVariance, exactMoments(c), c.used, 0);
+      const Fractions<3> a = allocate<3>(Allocation::kVariance, exactMoments(c), c.used, 0);
       double variance = 0;
       for (size_t i = 0; i < 3; ++i) variance += c.expect["sigma2_eq"][i].get<double>() / double(a[i]);
       EXPECT_NEAR(variance, nVar, 1e-4 * nVar);
     }
 }
 
-Moments randomMoments(Random& random) {
-  Moments m;
+Moments<3> randomMoments(Random& random) {
+  Moments<3> m;
   m.hits = static_cast<float>(random.integer(1, 1000));
   for (size_t i = 0; i < 3; ++i) {
     m.shared.second[i] = m.hits * static_cast<float>(random.logUniform(1e-8, 1e8));
@@ -99,13 +99,13 @@ constexpr Allocation kMomentRules[] = {Allocation::kVariance,         Allocation
 TEST(Allocate, ClampsAndSumsToOne) {
   Random random(1);
   for (int k = 0; k < 20000; ++k) {
-    const Moments m = randomMoments(random);
+    const Moments<3> m = randomMoments(random);
     const auto used = static_cast<TechniqueMask>(random.integer(1, 7));
     const int n = std::popcount(used);
     const float minimum = k % 4 == 0 ? 0 : static_cast<float>(random.uniform(0, 0.6));  // also more than 1/n
     const double floor = std::min(double(minimum), 1.0 / n);
     for (Allocation rule : kMomentRules) {
-      const Fractions a = allocate(rule, m, used, minimum), wanted = allocate(rule, m, used, 0);
+      const Fractions<3> a = allocate<3>(rule, m, used, minimum), wanted = allocate<3>(rule, m, used, 0);
       EXPECT_NEAR(sum(a), 1, 1e-6);
       double ratio = 0;
       for (size_t i = 0; i < 3; ++i) {
@@ -131,14 +131,14 @@ TEST(Allocate, ClampsAndSumsToOne) {
 TEST(Allocate, DoesNotDependOnTheScaleOfTheIntegrand) {
   Random random(2);
   for (int k = 0; k < 1000; ++k) {
-    Moments m = randomMoments(random);
+    Moments<3> m = randomMoments(random);
     for (Allocation rule : kMomentRules) {
-      const Fractions a = allocate(rule, m, kAllTechniques, 0.1f);
-      Moments bright = m;
+      const Fractions<3> a = allocate<3>(rule, m, Techniques<3>::kAll, 0.1f);
+      Moments<3> bright = m;
       bright.shared.integral *= 0x1p10f, bright.shared.square *= 0x1p20f;
       for (size_t i = 0; i < 3; ++i)
         bright.shared.second[i] *= 0x1p20f, bright.square[i] *= 0x1p20f, bright.mean[i] *= 0x1p10f;
-      const Fractions b = allocate(rule, bright, kAllTechniques, 0.1f);
+      const Fractions<3> b = allocate<3>(rule, bright, Techniques<3>::kAll, 0.1f);
       for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], 1e-6);
     }
   }
@@ -147,43 +147,43 @@ TEST(Allocate, DoesNotDependOnTheScaleOfTheIntegrand) {
 // A zero, a NaN or an infinity in what a rule reads of any technique: equal fractions.
 TEST(Allocate, EqualWhereTheMomentsSayNothing) {
   Random random(3);
-  const auto isEqual = [](const Fractions& a) { return a == Fractions{1.0f / 3, 1.0f / 3, 1.0f / 3}; };
+  const auto isEqual = [](const Fractions<3>& a) { return a == Fractions<3>{1.0f / 3, 1.0f / 3, 1.0f / 3}; };
   for (size_t i = 0; i < 3; ++i) {
     for (float bad : {0.0f, kNan, kInf, -kInf, -1.0f}) {
-      Moments m = randomMoments(random);
+      Moments<3> m = randomMoments(random);
       m.shared.second[i] = bad;
-      EXPECT_TRUE(isEqual(allocate(Allocation::kSecondMoment, m, kAllTechniques, 0))) << "second " << bad;
-      EXPECT_FALSE(isEqual(allocate(Allocation::kVariance, m, kAllTechniques, 0)));  // does not read it
+      EXPECT_TRUE(isEqual(allocate<3>(Allocation::kSecondMoment, m, Techniques<3>::kAll, 0))) << "second " << bad;
+      EXPECT_FALSE(isEqual(allocate<3>(Allocation::kVariance, m, Techniques<3>::kAll, 0)));  // does not read it
       m = randomMoments(random);
       m.square[i] = bad;
-      EXPECT_TRUE(isEqual(allocate(Allocation::kVariance, m, kAllTechniques, 0))) << "square " << bad;
-      EXPECT_FALSE(isEqual(allocate(Allocation::kSecondMoment, m, kAllTechniques, 0)));
+      EXPECT_TRUE(isEqual(allocate<3>(Allocation::kVariance, m, Techniques<3>::kAll, 0))) << "square " << bad;
+      EXPECT_FALSE(isEqual(allocate<3>(Allocation::kSecondMoment, m, Techniques<3>::kAll, 0)));
     }
     for (float bad : {kNan, kInf, -kInf}) {
-      Moments m = randomMoments(random);
+      Moments<3> m = randomMoments(random);
       m.mean[i] = bad;
-      EXPECT_TRUE(isEqual(allocate(Allocation::kVariance, m, kAllTechniques, 0))) << "mean " << bad;
+      EXPECT_TRUE(isEqual(allocate<3>(Allocation::kVariance, m, Techniques<3>::kAll, 0))) << "mean " << bad;
     }
   }
   for (Allocation rule : kMomentRules) {
     for (float hits : {0.0f, -1.0f, kNan}) {
-      Moments m = randomMoments(random);
+      Moments<3> m = randomMoments(random);
       m.hits = hits;
-      EXPECT_TRUE(isEqual(allocate(rule, m, kAllTechniques, 0.1f))) << hits;
+      EXPECT_TRUE(isEqual(allocate<3>(rule, m, Techniques<3>::kAll, 0.1f))) << hits;
     }
-    EXPECT_TRUE(isEqual(allocate(rule, {}, kAllTechniques, 0.1f)));
+    EXPECT_TRUE(isEqual(allocate<3>(rule, {}, Techniques<3>::kAll, 0.1f)));
     // no variance at all: every technique is exact, none is better
-    Moments m;
+    Moments<3> m;
     m.hits = 1, m.square = m.mean = {1, 1, 1};
-    EXPECT_TRUE(isEqual(allocate(Allocation::kVariance, m, kAllTechniques, 0)));
+    EXPECT_TRUE(isEqual(allocate<3>(Allocation::kVariance, m, Techniques<3>::kAll, 0)));
     // a technique out of use may hold anything
     m = randomMoments(random);
     m.shared.second[1] = m.square[1] = m.mean[1] = kNan;
-    const Fractions a = allocate(rule, m, kSpecularTechniques, 0);
+    const Fractions<3> a = allocate<3>(rule, m, TechniqueMask(0b101), 0);
     EXPECT_EQ(a[1], 0);
     EXPECT_NEAR(sum(a), 1, 1e-6);
     EXPECT_NE(a[0], 0.5f);
-    EXPECT_EQ(allocate(rule, m, 0, 0.1f), (Fractions{}));
+    EXPECT_EQ(allocate<3>(rule, m, 0, 0.1f), (Fractions<3>{}));
   }
 }
 
@@ -192,15 +192,15 @@ TEST(Allocate, EqualWhereTheMomentsSayNothing) {
 // lamp is 10 there, the sky `sky` everywhere.
 TEST(Allocate, LightThatIsNotAimedAtKeepsItsTechnique) {
   const auto fractionsUnder = [](Allocation rule, float sky) {
-    Moments m;
-    const Fractions n{0, 0.5f, 0.5f};
+    Moments<3> m;
+    const Fractions<3> n{0, 0.5f, 0.5f};
     m.hits = 1;
     constexpr int kNodes = 1000;
     const auto add = [&](float f, float light) {  // weighted, so that the sum over the nodes is the integral
-      Moments one;
+      Moments<3> one;
       const float q = 0.5f + 0.5f * light;
-      one.add(f, {0, 1, light}, n, kDiffuseTechniques);
-      const auto scale = [&](PartMoments& part) {
+      one.add(f, {0, 1, light}, n, TechniqueMask(0b110));
+      const auto scale = [&](PartMoments<3>& part) {
         for (float& x : part.second) x *= q / kNodes;
         part.square *= q / kNodes, part.integral *= q / kNodes;
       };
@@ -212,18 +212,18 @@ TEST(Allocate, LightThatIsNotAimedAtKeepsItsTechnique) {
       if (k < kNodes / 10) add(10, 10);
       if (sky > 0) add(sky, 0);
     }
-    return allocate(rule, m, kDiffuseTechniques, 0);
+    return allocate<3>(rule, m, TechniqueMask(0b110), 0);
   };
   for (Allocation rule : {Allocation::kSecondMoment, Allocation::kInverseVariance}) {
-    const float none = fractionsUnder(rule, 0)[kCosine];
+    const float none = fractionsUnder(rule, 0)[1];
     EXPECT_LT(none, 0.12f) << name(rule);
     float last = none;
     for (float sky : {0.1f, 1.0f, 10.0f, 100.0f}) {
-      const float cosine = fractionsUnder(rule, sky)[kCosine];
+      const float cosine = fractionsUnder(rule, sky)[1];
       EXPECT_GT(cosine, last) << name(rule) << ' ' << sky;
       last = cosine;
     }
-    EXPECT_GT(fractionsUnder(rule, 1)[kCosine], 0.45f) << name(rule);  // as much light as the lamp's
+    EXPECT_GT(fractionsUnder(rule, 1)[1], 0.45f) << name(rule);  // as much light as the lamp's
     EXPECT_GT(last, 0.95f) << name(rule);
   }
 }
@@ -232,10 +232,10 @@ TEST(Allocate, ExtremeMoments) {
   for (Allocation rule : kMomentRules) {
     for (float big : {1e30f, 3e38f}) {
       for (float small : {1e-45f, 1e-38f, 1e-30f}) {
-        Moments m;
+        Moments<3> m;
         m.hits = 1, m.shared.second = m.square = {small, big, big};
         m.shared.integral = small, m.shared.square = big;
-        const Fractions a = allocate(rule, m, kAllTechniques, 0.1f);
+        const Fractions<3> a = allocate<3>(rule, m, Techniques<3>::kAll, 0.1f);
         EXPECT_NEAR(sum(a), 1, 1e-5);
         for (float x : a) EXPECT_GE(x, 0.0999f);
       }
@@ -252,52 +252,52 @@ TEST(CombineSplit, MeetsBothDemands) {
     const auto x = static_cast<float>(random.logUniform(1e-30, 0.999)),
                y = static_cast<float>(random.logUniform(1e-30, 0.999));
     const bool flip = k % 2 == 0;
-    const Fractions specular{flip ? 1 - x : x, 0, flip ? x : 1 - x}, diffuse{0, 1 - y, y};
-    const Fractions a = combineSplit(specular, diffuse);
+    const Fractions<3> specular{flip ? 1 - x : x, 0, flip ? x : 1 - x}, diffuse{0, 1 - y, y};
+    const Fractions<3> a = combineSplit<3>({specular, diffuse});
     EXPECT_NEAR(sum(a), 1, 1e-6);
-    EXPECT_GE(a[kLobe], 0.5f * specular[kLobe] * (1 - 1e-6f));
-    EXPECT_GE(a[kCosine], 0.5f * diffuse[kCosine] * (1 - 1e-6f));
-    EXPECT_GE(a[kLight], 0.5f * std::max(specular[kLight], diffuse[kLight]) * (1 - 1e-6f));
-    EXPECT_NEAR(double(a[kLobe]) * double(diffuse[kCosine]), double(a[kCosine]) * double(specular[kLobe]), 1e-6);
+    EXPECT_GE(a[0], 0.5f * specular[0] * (1 - 1e-6f));
+    EXPECT_GE(a[1], 0.5f * diffuse[1] * (1 - 1e-6f));
+    EXPECT_GE(a[2], 0.5f * std::max(specular[2], diffuse[2]) * (1 - 1e-6f));
+    EXPECT_NEAR(double(a[0]) * double(diffuse[1]), double(a[1]) * double(specular[0]), 1e-6);
   }
 }
 // Def. 7 for both integrands at once.
 TEST(CombineSplit, EqualIsEqual) {
-  const Fractions a = combineSplit({0.5f, 0, 0.5f}, {0, 0.5f, 0.5f});
+  const Fractions<3> a = combineSplit<3>({{{0.5f, 0, 0.5f}, {0, 0.5f, 0.5f}}});
   for (float x : a) EXPECT_FLOAT_EQ(x, 1.0f / 3);
 }
 TEST(AllocateSplit, AbsentIntegrandsAskForNothing) {
-  const auto equal = [](TechniqueMask m) { return allocateSplit(Allocation::kEqual, {}, {}, m, 0.1f); };
-  EXPECT_EQ(equal(kDiffuseTechniques), (Fractions{0, 0.5f, 0.5f}));
-  EXPECT_EQ(equal(kSpecularTechniques), (Fractions{0.5f, 0, 0.5f}));
-  EXPECT_EQ(equal(maskOf(kLight)), (Fractions{0, 0, 1}));
-  EXPECT_EQ(equal(0), (Fractions{}));
+  const auto equal = [](TechniqueMask m) { return allocateSplit<3>(Allocation::kEqual, {}, m, 0.1f); };
+  EXPECT_EQ(equal(TechniqueMask(0b110)), (Fractions<3>{0, 0.5f, 0.5f}));
+  EXPECT_EQ(equal(TechniqueMask(0b101)), (Fractions<3>{0.5f, 0, 0.5f}));
+  EXPECT_EQ(equal(maskOf(2)), (Fractions<3>{0, 0, 1}));
+  EXPECT_EQ(equal(0), (Fractions<3>{}));
 }
 TEST(CombineSplit, WithoutLightHalfForEach) {
-  EXPECT_EQ(combineSplit({1, 0, 0}, {0, 1, 0}), (Fractions{0.5f, 0.5f, 0}));
-  EXPECT_EQ(combineSplit({1, 0, 0}, {0, 0, 0}), (Fractions{1, 0, 0}));
-  EXPECT_EQ(combineSplit({0, 0, 0}, {0, 1, 0}), (Fractions{0, 1, 0}));
-  EXPECT_EQ(combineSplit({0, 0, 0}, {0, 0, 0}), (Fractions{}));
-  EXPECT_EQ(combineSplit({0.5f, 0, 0.5f}, {0, 0, 0}), (Fractions{0.5f, 0, 0.5f}));
+  EXPECT_EQ(combineSplit<3>({{{1, 0, 0}, {0, 1, 0}}}), (Fractions<3>{0.5f, 0.5f, 0}));
+  EXPECT_EQ(combineSplit<3>({{{1, 0, 0}, {0, 0, 0}}}), (Fractions<3>{1, 0, 0}));
+  EXPECT_EQ(combineSplit<3>({{{0, 0, 0}, {0, 1, 0}}}), (Fractions<3>{0, 1, 0}));
+  EXPECT_EQ(combineSplit<3>({{{0, 0, 0}, {0, 0, 0}}}), (Fractions<3>{}));
+  EXPECT_EQ(combineSplit<3>({{{0.5f, 0, 0.5f}, {0, 0, 0}}}), (Fractions<3>{0.5f, 0, 0.5f}));
 }
 // With no minimum a light's share may be next to nothing.
 TEST(CombineSplit, TinyShares) {
   for (float x : {1e-45f, 1e-40f, 1e-38f, 1e-20f})
     for (float y : {1e-45f, 1e-40f, 1e-38f, 1e-20f, 0.5f}) {
-      const Fractions a = combineSplit({1 - x, 0, x}, {0, 1 - y, y});
+      const Fractions<3> a = combineSplit<3>({{{1 - x, 0, x}, {0, 1 - y, y}}});
       EXPECT_NEAR(sum(a), 1, 1e-6) << x << " " << y;
     }
 }
 
 TEST(Restrict, KeepsProportions) {
-  const Fractions a{0.2f, 0.3f, 0.5f};
-  const Fractions r = restrict(a, kSpecularTechniques);
+  const Fractions<3> a{0.2f, 0.3f, 0.5f};
+  const Fractions<3> r = restrict<3>(a, TechniqueMask(0b101));
   EXPECT_FLOAT_EQ(r[0], 0.2f / 0.7f);
   EXPECT_EQ(r[1], 0);
   EXPECT_FLOAT_EQ(r[2], 0.5f / 0.7f);
-  EXPECT_EQ(restrict({1, 0, 0}, kDiffuseTechniques), (Fractions{0, 0.5f, 0.5f}));  // nothing known of these
-  EXPECT_EQ(restrict({1, 0, 0}, maskOf(kLight)), (Fractions{0, 0, 1}));
-  EXPECT_EQ(restrict(a, 0), (Fractions{}));
+  EXPECT_EQ(restrict<3>({1, 0, 0}, TechniqueMask(0b110)), (Fractions<3>{0, 0.5f, 0.5f}));  // nothing known of these
+  EXPECT_EQ(restrict<3>({1, 0, 0}, maskOf(2)), (Fractions<3>{0, 0, 1}));
+  EXPECT_EQ(restrict<3>(a, 0), (Fractions<3>{}));
 }
 
 TEST(Names, AreTheCommandLinesOwn) {

@@ -13,7 +13,7 @@ namespace {
 
 using namespace test;
 
-Fractions randomFractions(Random& random) {
+Fractions<3> randomFractions(Random& random) {
   double a[3], sum = 0;
   do {
     sum = 0;
@@ -25,10 +25,10 @@ Fractions randomFractions(Random& random) {
 TEST(SystematicCounts, RoundUpOrDownAndSumUp) {
   Random random(1);
   for (int k = 0; k < 20000; ++k) {
-    const Fractions a = randomFractions(random);
+    const Fractions<3> a = randomFractions(random);
     const int n = random.integer(1, k % 2 == 0 ? 8 : 300);
     const float u = k % 16 == 0 ? 0 : k % 16 == 1 ? 0x1.fffffep-1f : random.square<float>().x;
-    const auto counts = systematicCounts(a, n, u);
+    const auto counts = systematicCounts<3>(a, n, u);
     ASSERT_EQ(std::accumulate(counts.begin(), counts.end(), 0), n);
     for (size_t i = 0; i < 3; ++i) {
       const double expected = double(a[i]) * n, rounding = 2e-7 * n;  // of the fractions' running sum
@@ -46,11 +46,11 @@ TEST(SystematicCounts, AreRightInTheMean) {
   Random random(2);
   constexpr int kSteps = 1 << 14;
   for (int k = 0; k < 30; ++k) {
-    const Fractions a = randomFractions(random);
+    const Fractions<3> a = randomFractions(random);
     const int n = random.integer(1, 40);
     double sum[3] = {};
     for (int j = 0; j < kSteps; ++j) {
-      const auto counts = systematicCounts(a, n, (static_cast<float>(j) + 0.5f) / kSteps);
+      const auto counts = systematicCounts<3>(a, n, (static_cast<float>(j) + 0.5f) / kSteps);
       for (size_t i = 0; i < 3; ++i) sum[i] += counts[i];
     }
     for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(sum[i] / kSteps, double(a[i]) * n, 1.0 / kSteps + 4e-7 * n);
@@ -62,14 +62,14 @@ TEST(WholeCounts, AreExactOverBlocksOfVisits) {
   Random random(3);
   const Sampler sampler(SamplerType::kIndependent, 7, 1);
   for (uint32_t k = 0; k < 40; ++k) {
-    const Fractions a = randomFractions(random);
+    const Fractions<3> a = randomFractions(random);
     const int n = random.integer(3, 12);
     for (uint32_t block : {4u, 8u, 16u, 32u, 64u, 128u}) {
-      const Fractions whole = wholeCounts(a, n, block);
+      const Fractions<3> whole = wholeCounts<3>(a, n, block);
       const float units = static_cast<float>(n) * static_cast<float>(std::min(block, 64u));
       std::array<int, 3> total{};
       for (uint32_t visit = block; visit < 2 * block; ++visit) {
-        const auto counts = systematicCounts(whole, n, sampler.spread1D(k, 2, visit));
+        const auto counts = systematicCounts<3>(whole, n, sampler.spread1D(k, 2, visit));
         for (size_t i = 0; i < 3; ++i) total[i] += counts[i];
       }
       for (size_t i = 0; i < 3; ++i) {
@@ -79,18 +79,18 @@ TEST(WholeCounts, AreExactOverBlocksOfVisits) {
       }
     }
   }
-  const Fractions a{0.1f, 0.2f, 0.7f};
-  EXPECT_EQ(wholeCounts(a, 3, 2), a) << "too few visits for shares: rounding would change them too much";
+  const Fractions<3> a{0.1f, 0.2f, 0.7f};
+  EXPECT_EQ(wholeCounts<3>(a, 3, 2), a) << "too few visits for shares: rounding would change them too much";
 }
 
 TEST(SystematicCounts, WholeSharesDoNotVary) {
   for (float u : {0.0f, 0.1f, 0.5f, 0x1.fffffep-1f}) {
-    EXPECT_EQ(systematicCounts({0.25f, 0.5f, 0.25f}, 8, u), (std::array<int, 3>{2, 4, 2}));
-    EXPECT_EQ(systematicCounts({1, 0, 0}, 5, u), (std::array<int, 3>{5, 0, 0}));
-    EXPECT_EQ(systematicCounts({0, 1, 0}, 5, u), (std::array<int, 3>{0, 5, 0}));
-    EXPECT_EQ(systematicCounts({0, 0, 1}, 5, u), (std::array<int, 3>{0, 0, 5}));
+    EXPECT_EQ(systematicCounts<3>({0.25f, 0.5f, 0.25f}, 8, u), (std::array<int, 3>{2, 4, 2}));
+    EXPECT_EQ(systematicCounts<3>({1, 0, 0}, 5, u), (std::array<int, 3>{5, 0, 0}));
+    EXPECT_EQ(systematicCounts<3>({0, 1, 0}, 5, u), (std::array<int, 3>{0, 5, 0}));
+    EXPECT_EQ(systematicCounts<3>({0, 0, 1}, 5, u), (std::array<int, 3>{0, 0, 5}));
     // fractions whose float sum misses 1
-    const auto third = systematicCounts({1.0f / 3, 1.0f / 3, 1.0f / 3}, 300, u);
+    const auto third = systematicCounts<3>({1.0f / 3, 1.0f / 3, 1.0f / 3}, 300, u);
     for (int c : third) EXPECT_NEAR(c, 100, u == 0 ? 1 : 0);
   }
 }

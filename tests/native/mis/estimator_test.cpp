@@ -12,7 +12,7 @@ using namespace test;
 constexpr Weights kRules[] = {Weights::kBalance, Weights::kNonbalance, Weights::kPower, Weights::kCutoff,
                               Weights::kMaximum};
 
-Fractions fractionsOf(const std::array<int, kTechniques>& counts) {
+Fractions<3> fractionsOf(const std::array<int, 3>& counts) {
   const auto n = static_cast<float>(counts[0] + counts[1] + counts[2]);
   return {static_cast<float>(counts[0]) / n, static_cast<float>(counts[1]) / n, static_cast<float>(counts[2]) / n};
 }
@@ -25,8 +25,8 @@ void checkMean(const WardCase& c, Weights rule, bool whole, uint64_t seed) {
   SCOPED_TRACE(c.input.dump());
   Random random(seed);
   // any counts: whole ones of 1 to 8, or expected ones of any fraction, also below 1
-  std::array<int, kTechniques> counts{};
-  Fractions fractions{};
+  std::array<int, 3> counts{};
+  Fractions<3> fractions{};
   int samples = 0;
   if (whole) {
     for (int i = 0; i < c.techniques; ++i) counts[static_cast<size_t>(i)] = random.integer(1, 8);
@@ -38,10 +38,10 @@ void checkMean(const WardCase& c, Weights rule, bool whole, uint64_t seed) {
     for (int i = 0; i < c.techniques; ++i) sum += a[i] = random.uniform(0.1, 1);
     for (int i = 0; i < c.techniques; ++i) fractions[static_cast<size_t>(i)] = static_cast<float>(a[i] / sum);
   }
-  const Mixture mixture(fractions, samples, rule);
+  const Mixture<3> mixture(fractions, samples, rule);
   Estimate mean;
   for (int k = 0; k < 5000; ++k) {
-    if (!whole) counts = systematicCounts(fractions, samples, random.square<float>().x);
+    if (!whole) counts = systematicCounts<3>(fractions, samples, random.square<float>().x);
     mean.add(estimate(c, mixture, counts, random));
   }
   const double exact = c.expect["L_o_integrand"].get<double>();
@@ -87,8 +87,8 @@ TEST(Variance, IsWhatTheTheorySays) {
     Estimate measured[3];
     for (size_t r = 0; r < 3; ++r) {
       const auto& golden = c.expect["integer_counts"]["256"][rules[r].key];
-      const std::array<int, kTechniques> counts{golden["N1"].get<int>(), golden["N2"].get<int>(), 0};
-      const Mixture mixture(fractionsOf(counts), 256, rules[r].weights);
+      const std::array<int, 3> counts{golden["N1"].get<int>(), golden["N2"].get<int>(), 0};
+      const Mixture<3> mixture(fractionsOf(counts), 256, rules[r].weights);
       Random random(7 + r);
       for (int k = 0; k < kReplicates; ++k) measured[r].add(estimate(c, mixture, counts, random));
       const double exact = golden["Var"].get<double>();
@@ -96,7 +96,7 @@ TEST(Variance, IsWhatTheTheorySays) {
       EXPECT_LT(measured[r].varianceError(), 0.1 * exact);
       EXPECT_NEAR(measured[r].mean(), c.expect["L_o_integrand"].get<double>(), 5 * measured[r].error());
       // our own fractions, rounded as the golden file rounds, are the golden counts
-      const Fractions a = allocate(rules[r].allocation, exactMoments(c), c.used, 0);
+      const Fractions<3> a = allocate<3>(rules[r].allocation, exactMoments(c), c.used, 0);
       EXPECT_NEAR(256 * double(a[0]), counts[0], 1);
     }
     // Def. 7 = Def. 8, up to the rounding of the counts to whole numbers
@@ -114,12 +114,12 @@ TEST(Variance, OfFractionalCountsIsClose) {
     if (!WardCase::is(json)) continue;
     const WardCase c(json);
     if (c.alpha() != 0.2 || c.input["theta_o_deg"] != 60) continue;
-    const Fractions a = allocate(Allocation::kSecondMoment, exactMoments(c), c.used, 0.1f);
-    const Mixture mixture(a, 16, Weights::kBalance);
+    const Fractions<3> a = allocate<3>(Allocation::kSecondMoment, exactMoments(c), c.used, 0.1f);
+    const Mixture<3> mixture(a, 16, Weights::kBalance);
     Random random(3);
     Estimate e;
     for (int k = 0; k < 20000; ++k)
-      e.add(estimate(c, mixture, systematicCounts(a, 16, random.square<float>().x), random));
+      e.add(estimate(c, mixture, systematicCounts<3>(a, 16, random.square<float>().x), random));
     const double nVar = 16 * e.variance(), exact = c.expect["NVar"]["balance inv_m2 (Def 9)"].get<double>();
     EXPECT_NEAR(nVar / exact, 1, 0.1);
     EXPECT_LT(nVar, c.expect["NVar"]["F_eq (Def 7)"].get<double>());

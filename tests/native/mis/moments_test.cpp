@@ -15,14 +15,14 @@ using namespace test;
 void check(const WardCase& c, int perTechnique, uint64_t seed) {
   SCOPED_TRACE(c.input.dump());
   Random random(seed);
-  const Moments exact = exactMoments(c);
-  Fractions n{};
+  const Moments<3> exact = exactMoments(c);
+  Fractions<3> n{};
   for (int i = 0; i < c.techniques; ++i) n[static_cast<size_t>(i)] = static_cast<float>(perTechnique + i);  // unequal
   Estimate second[3], variance[3];
   for (int batch = 0; batch < 500; ++batch) {
-    Moments m;
+    Moments<3> m;
     for (int hit = 0; hit < 16; ++hit) {
-      Moments one;
+      Moments<3> one;
       for (int i = 0; i < c.techniques; ++i)
         for (int j = 0; j < perTechnique + i; ++j) {
           const Sampled s = c.sample(i, random);
@@ -69,11 +69,11 @@ TEST(Moments, OfThreeTechniques) {
 }
 
 TEST(Moments, ZerosAndUnusedTechniquesAddNothing) {
-  Moments m;
-  m.add(0, {1, 1, 1}, {1, 1, 1}, kAllTechniques);
-  EXPECT_EQ(m.shared.second, (Fractions{}));
-  m.add(2, {0.25f, 0.5f, 7}, {4, 4, 4}, maskOf(kLobe) | maskOf(kCosine));
-  EXPECT_EQ(m.shared.second, (Fractions{2 / 0.25f * 2 / 3, 2 / 0.5f * 2 / 3, 0}));
+  Moments<3> m;
+  m.add(0, {1, 1, 1}, {1, 1, 1}, Techniques<3>::kAll);
+  EXPECT_EQ(m.shared.second, (Fractions<3>{}));
+  m.add(2, {0.25f, 0.5f, 7}, {4, 4, 4}, maskOf(0) | maskOf(1));
+  EXPECT_EQ(m.shared.second, (Fractions<3>{2 / 0.25f * 2 / 3, 2 / 0.5f * 2 / 3, 0}));
   EXPECT_EQ(m.mean[2], 0);
   EXPECT_EQ(m.square[2], 0);
 }
@@ -81,20 +81,20 @@ TEST(Moments, ZerosAndUnusedTechniquesAddNothing) {
 // Each sample is of the part that its densities say. Where the lobe's density is no float there is light that it does
 // not find: its second moment is beyond all, not what is left without that light.
 TEST(Moments, KnowWhatTheLightTechniqueFinds) {
-  const Fractions n{2, 2, 2};
-  Moments m;
-  m.add(1, {1, 0, 1}, n, kSpecularTechniques);
-  m.add(1, {1, 0, 0}, n, kSpecularTechniques);
-  m.add(1, {0, 0, 1}, n, maskOf(kLight));
-  EXPECT_EQ(m.shared.second, (Fractions{0.25f, 0, 0.25f}));
-  EXPECT_EQ(m.unaimed.second, (Fractions{0.5f, 0, 0}));
-  EXPECT_EQ(m.exclusive.second, (Fractions{0, 0, 0.5f}));
+  const Fractions<3> n{2, 2, 2};
+  Moments<3> m;
+  m.add(1, {1, 0, 1}, n, TechniqueMask(0b101));
+  m.add(1, {1, 0, 0}, n, TechniqueMask(0b101));
+  m.add(1, {0, 0, 1}, n, maskOf(2));
+  EXPECT_EQ(m.shared.second, (Fractions<3>{0.25f, 0, 0.25f}));
+  EXPECT_EQ(m.unaimed.second, (Fractions<3>{0.5f, 0, 0}));
+  EXPECT_EQ(m.exclusive.second, (Fractions<3>{0, 0, 0.5f}));
   EXPECT_EQ(m.shared.integral, 0.25f);
   EXPECT_EQ(m.shared.square, 0.125f);
-  EXPECT_EQ(m.mean, (Fractions{0.125f + 0.5f, 0, 0.125f + 0.5f}));
-  Moments joint;
-  joint.add(1, {0, 1, 1}, n, kAllTechniques);
-  EXPECT_GE(joint.shared.second[kLobe], 1e29f);
+  EXPECT_EQ(m.mean, (Fractions<3>{0.125f + 0.5f, 0, 0.125f + 0.5f}));
+  Moments<3> joint;
+  joint.add(1, {0, 1, 1}, n, Techniques<3>::kAll);
+  EXPECT_GE(joint.shared.second[0], 1e29f);
 }
 
 }  // namespace

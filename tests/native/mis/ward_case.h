@@ -15,7 +15,7 @@ namespace wardmis::test {
 
 struct Sampled {
   float f;
-  Fractions p;
+  Fractions<3> p;
 };
 
 class WardCase {
@@ -43,8 +43,8 @@ class WardCase {
 
   Sampled sample(int technique, Random& random) const {
     const Vec2<double> u = random.square();
-    if (technique == kLobe) return at(wardSample(wo_, ax_, ay_, u));
-    if (technique == kCosine) {
+    if (technique == 0) return at(wardSample(wo_, ax_, ay_, u));
+    if (technique == 1) {
       const double r = std::sqrt(u.x), phi = 2 * kPi<double> * u.y;
       return at({r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u.x)});
     }
@@ -71,8 +71,8 @@ class WardCase {
 };
 
 // The exact moments of a case, as the pilot of one hit would hand them on.
-inline Moments exactMoments(const WardCase& c) {
-  Moments m;
+inline Moments<3> exactMoments(const WardCase& c) {
+  Moments<3> m;
   m.hits = 1;
   for (size_t i = 0; i < static_cast<size_t>(c.techniques); ++i) {
     const std::string n = std::to_string(i + 1);
@@ -90,8 +90,7 @@ inline Moments exactMoments(const WardCase& c) {
 }
 
 // One estimate of the integral; the counts may be the actual ones of fractional n_i.
-inline double estimate(const WardCase& c, const Mixture& mixture, const std::array<int, kTechniques>& counts,
-                       Random& random) {
+inline double estimate(const WardCase& c, const Mixture<3>& mixture, const std::array<int, 3>& counts, Random& random) {
   double sum = 0;
   for (int i = 0; i < c.techniques; ++i)
     for (int j = 0; j < counts[static_cast<size_t>(i)]; ++j) {

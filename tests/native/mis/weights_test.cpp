@@ -16,7 +16,7 @@ constexpr Weights kRules[] = {Weights::kBalance, Weights::kNonbalance, Weights::
 bool in(TechniqueMask mask, int i) { return (mask >> i & 1) != 0; }
 
 // w_i as the literature writes it, over the techniques that take samples.
-long double weight(Weights rule, int i, const Fractions& n, const Fractions& p, TechniqueMask used) {
+long double weight(Weights rule, int i, const Fractions<3>& n, const Fractions<3>& p, TechniqueMask used) {
   const auto term = [&](int k) -> long double {
     if (!in(used, k) || !(n[static_cast<size_t>(k)] > 0)) return 0;
     const long double pk = p[static_cast<size_t>(k)], np = pk * static_cast<long double>(n[static_cast<size_t>(k)]);
@@ -32,7 +32,7 @@ long double weight(Weights rule, int i, const Fractions& n, const Fractions& p, 
 }
 
 struct Problem {
-  Fractions fractions, p;
+  Fractions<3> fractions, p;
   TechniqueMask used;
   int samples;
 };
@@ -57,10 +57,10 @@ void check(double lo, double hi) {
   for (int k = 0; k < 20000; ++k) {
     const Problem r = randomProblem(random, lo, hi);
     for (Weights rule : kRules) {
-      const Mixture mixture(r.fractions, r.samples, rule);
+      const Mixture<3> mixture(r.fractions, r.samples, rule);
       long double sum = 0;
       bool any = false;
-      for (int i = 0; i < kTechniques; ++i) {
+      for (int i = 0; i < 3; ++i) {
         const auto s = static_cast<size_t>(i);
         if (!in(r.used, i) || !(r.p[s] > 0) || !(mixture.n[s] > 0)) continue;  // no sample of i can lie here
         any = true;
@@ -84,14 +84,14 @@ TEST(Weights, OfExtremeDensities) { check(1e-30, 1e30); }
 
 // Where every density has underflowed, so has f.
 TEST(Weights, NoDensityNoValue) {
-  for (Weights rule : kRules) EXPECT_EQ(Mixture({0.5f, 0.5f, 0}, 4, rule).scale(1, {0, 0, 0}, 3), 0);
+  for (Weights rule : kRules) EXPECT_EQ(Mixture<3>({0.5f, 0.5f, 0}, 4, rule).scale(1, {0, 0, 0}, 3), 0);
 }
 
 // A technique that takes no samples takes no part of the weights either.
 TEST(Weights, WithoutSamplesWithoutWeight) {
   for (Weights rule : kRules) {
-    const Mixture mixture({0, 1, 0}, 4, rule);
-    EXPECT_FLOAT_EQ(mixture.scale(1, {1e10f, 0.5f, 1e10f}, kAllTechniques), 1 / (4 * 0.5f));
+    const Mixture<3> mixture({0, 1, 0}, 4, rule);
+    EXPECT_FLOAT_EQ(mixture.scale(1, {1e10f, 0.5f, 1e10f}, Techniques<3>::kAll), 1 / (4 * 0.5f));
   }
 }
 
@@ -99,9 +99,9 @@ TEST(Weights, WithoutSamplesWithoutWeight) {
 TEST(Weights, EqualCountsMakeBalanceAndNonbalanceEqual) {
   Random random(2);
   for (int k = 0; k < 1000; ++k) {
-    const Fractions p{static_cast<float>(random.logUniform(1e-3, 1e3)),
-                      static_cast<float>(random.logUniform(1e-3, 1e3)), 0};
-    const Mixture a({0.5f, 0.5f, 0}, 6, Weights::kBalance), b({0.5f, 0.5f, 0}, 6, Weights::kNonbalance);
+    const Fractions<3> p{static_cast<float>(random.logUniform(1e-3, 1e3)),
+                         static_cast<float>(random.logUniform(1e-3, 1e3)), 0};
+    const Mixture<3> a({0.5f, 0.5f, 0}, 6, Weights::kBalance), b({0.5f, 0.5f, 0}, 6, Weights::kNonbalance);
     EXPECT_NEAR(a.scale(0, p, 3), b.scale(0, p, 3), 1e-6 * double(a.scale(0, p, 3)));
   }
 }
