@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From the shader nodes of Cycles to lobes, as each version of Blender has them: 3 (3.4), 4 (4.3) and 5 (5.2).
+// cosThetaO: of the view and the lobe's normal; weights of lobes may depend on it. add(Lobe) takes a lobe; lobes that
+// give nothing are not made. alpha is the square of a node's roughness, within [0, 1]. eta: of the side beyond the
+// surface over that of the view, so the inverse of the node's index where the view is from inside.
+#pragma once
+
+#include "bsdf/energy.h"
+#include "bsdf/fibre_table.h"
+#include "bsdf/lobe.h"
+
+namespace wardmis {
+
+enum class Glossy : uint8_t { kGgx, kBeckmann, kMultiGgx, kAshikhminShirley };
+
+inline constexpr float kLeastWeight = 1e-5f;  // Cycles makes no closure of less
+inline Rgb gray(float v) { return {v, v, v}; }
+inline Rgb clampedTo1(Rgb c) {
+  return {std::clamp(c.x, 0.0f, 1.0f), std::clamp(c.y, 0.0f, 1.0f), std::clamp(c.z, 0.0f, 1.0f)};
+}
+inline Rgb notNegative(Rgb c) { return {std::max(c.x, 0.0f), std::max(c.y, 0.0f), std::max(c.z, 0.0f)}; }
+// Roughness that the tables of albedos are read at.
+inline float tableRoughness(const Lobe& l) { return std::sqrt(std::sqrt(l.ax * l.ay)); }
+
+// Hands on a lobe that gives something; rough ones below Cycles' threshold as perfectly smooth.
+template <class Add>
+inline void addLobe(int version, Lobe l, Add&& add) {
+  if (!(std::abs(l.weight.x + l.weight.y + l.weight.z) >= 3 * kLeastWeight)) return;
+  const bool smooth = l.ax * l.ay <= (version == 3 ? 1e-7f : 2e-10f);
+  switch (l.kind) {
+    case LobeKind::kGgx:
+    case LobeKind::kBeckmann:
+    case LobeKind::kClearcoat:
+      if (smooth) l.kind = LobeKind::kMirror;
+      break;
+    case LobeKind::kGgxRefraction:
+    case LobeKind::kBeckmannRefraction:
+      if (smooth || std::abs(l.eta - 1) < 1e-4f) l.kind = LobeKind::kSharpRefraction;
+      break;
+    case LobeKind::kThinTransmission:
+      if (smooth) l.kind = LobeKind::kTransparent;
+      break;
+    case LobeKind::kAshikhminShirley:
+      if (std::max(l.ax, l.ay) <= 1e-4f) l.kind = LobeKind::kMirror;
+      break;
+    default:
+      break;
+  }
+  add(l);
+}
+
+inline Lobe roughLobe(int version, LobeKind kind, Rgb weight, float ax, float ay) {
+  Lobe l;
+  l.kind = kind, l.weight = weight, l.ax = std::clamp(ax, 0.0f, 1.0f), l.ay = std::clamp(ay, 0.0f, 1.0f);
+  l.masking = version == 3 ? Masking::kSeparable : Masking::kCorrelated;
+  return l;
+}
+
+// Diffuse: color alone is what decides over the light reflected more than once; weight contains it, too.
+template <class Add>
+inline void addDiffuse(int version, Rgb weight, Rgb color, float roughness, float cosThetaO, Add&& add,
+                       LobeKind rough = LobeKind::kOrenNayar) {
+  const bool below = rough == LobeKind::kRoughTranslucent;
+  Lobe l;
+  l.weight = weight;
+  l.kind = below ? LobeKind::kTranslucent : LobeKind::kLambert;
+  if (version == 3 ? roughness != 0 : roughness >= 1e-5f) {
+    const OrenNayar<float> model = OrenNayar<float>::of(std::clamp(roughness, 0.0f, 1.0f));
+    const Rgb rho = clampedTo1(color);
+    const auto multiple = [&](float r) { return version == 3 ? 0 : orenNayarMultiple(model, r, cosThetaO); };
+    l.kind = rough, l.a = model.a, l.b = model.b, l.f0 = {multiple(rho.x), multiple(rho.y), multiple(rho.z)};
+  }
+  addLobe(version, l, add);
+}
+template <class Add>
+inline void addTranslucent(int version, Rgb weight, Add&& add) {
+  Lobe l;
+  l.kind = LobeKind::kTranslucent, l.weight = weight;
+  addLobe(version, l, add);
+}
+template <class Add>
+inline void addTransparent(int version, Rgb weight, Add&& add) {
+  Lobe l;
+  l.kind = LobeKind::kTransparent, l.weight = weight;
+  addLobe(version, l, add);
+}
+
+// Glossy: color decides over multiple reflections alone; weight contains it, too.
+template <class Add>
+inline void addGlossy(int version, Glossy distribution, Rgb weight, Rgb color, float ax, float ay, float cosThetaO,
+                      Add&& add) {
+  const LobeKind kind = distribution == Glossy::kBeckmann           ? LobeKind::kBeckmann
+                        : distribution == Glossy::kAshikhminShirley ? LobeKind::kAshikhminShirley
+                                                                    : LobeKind::kGgx;
+  Lobe l = roughLobe(version, kind, weight, ax, ay);
+  if (kind == LobeKind::kAshikhminShirley) l.ax = std::max(l.ax, 1e-4f), l.ay = std::max(l.ay, 1e-4f);
+  if (distribution == Glossy::kMultiGgx) {
+    l.masking = Masking::kCorrelated;
+    l.weight *= compensate(reflectionAlbedo(tableRoughness(l), cosThetaO), clampedTo1(color)).factor();
+  }
+  addLobe(version, l, add);
+}
+
+// The two halves of glass. fresnel and f0 as in Lobe; tints multiply what is reflected and what is transmitted.
+struct GlassLook {
+  LobeKind reflection = LobeKind::kGgx, refraction = LobeKind::kGgxRefraction;
+  Masking masking = Masking::kCorrelated;
+  Fresnel fresnel = Fresnel::kBlended;
+  Rgb f0, reflectionTint, transmissionTint;
+};
+template <class Add>
+inline void addGlassLobes(int version, const GlassLook& look, Rgb weight, float alpha, float eta, Add&& add) {
+  Lobe l = roughLobe(version, look.reflection, weight * look.reflectionTint, alpha, alpha);
+  l.masking = look.masking, l.fresnel = look.fresnel, l.f0 = look.f0, l.eta = eta;
+  addLobe(version, l, add);
+  l.kind = look.refraction, l.weight = weight * look.transmissionTint;
+  addLobe(version, l, add);
+}
+
+// Glass: weight without the color.
+template <class Add>
+inline void addGlass(int version, Glossy distribution, Rgb weight, Rgb color, float alpha, float eta, float cosThetaO,
+                     Add&& add) {
+  GlassLook look{.f0 = gray(fresnelNormal(eta)), .reflectionTint = color, .transmissionTint = color};
+  if (distribution == Glossy::kBeckmann)
+    look.reflection = LobeKind::kBeckmann, look.refraction = LobeKind::kBeckmannRefraction;
+  if (distribution == Glossy::kMultiGgx) {
+    if (version == 3) look.fresnel = Fresnel::kDielectric;
+    const float roughness = std::sqrt(alpha);
+    weight *= compensate(glassAlbedo(roughness, cosThetaO, eta), clampedTo1(color)).factor();
+  } else if (version == 3) {  // Fresnel of the mean surface, and of its facets total internal reflection alone
+    const float f = fresnelDielectric(cosThetaO, eta);
+    look.masking = Masking::kSeparable, look.fresnel = Fresnel::kNone;
+    look.reflectionTint = color * f, look.transmissionTint = color * std::max(1e-4f, 1 - f);
+  }
+  addGlassLobes(version, look, weight, alpha, eta, add);
+}
+
+template <class Add>
+inline void addRefraction(int version, Glossy distribution, Rgb weight, float alpha, float eta, Add&& add) {
+  Lobe l =
+      roughLobe(version, distribution == Glossy::kBeckmann ? LobeKind::kBeckmannRefraction : LobeKind::kGgxRefraction,
+                weight, alpha, alpha);
+  l.eta = eta;
+  addLobe(version, l, add);
+}
+
+// Velvet (3.4, and the Ashikhmin sheen since), sigma in [0, 1].
+template <class Add>
+inline void addVelvet(int version, Rgb weight, float sigma, Add&& add) {
+  Lobe l;
+  l.kind = LobeKind::kVelvet, l.weight = weight, l.a = std::clamp(sigma, 0.01f, 1.0f);
+  addLobe(version, l, add);
+}
+
+// Sheen of fibres (since 4.0): its albedo is in the weight. Returns the albedo, 0 where there is no lobe.
+template <class Add>
+inline float addFibres(Rgb weight, float roughness, float cosThetaO, uint8_t frame, Add&& add) {
+  const std::array<float, 2> at{cosThetaO, std::clamp(roughness, 1e-3f, 1.0f)};
+  const auto read = [&](const auto* table, float unit) { return lookUp<fibre::kSteps, 2>(table, at) * (65535 / unit); };
+  const float albedo = read(fibre::kAlbedo, 65535);
+  Lobe l;
+  l.kind = LobeKind::kFibres, l.frame = frame, l.a = read(fibre::kScale, 65535), l.b = read(fibre::kSkew, 32767);
+  if (std::abs(l.a) < 1e-5f || albedo < 1e-5f) return 0;
+  l.weight = weight * albedo;
+  addLobe(4, l, add);
+  return albedo;
+}
+
+}  // namespace wardmis

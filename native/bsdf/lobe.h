@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The closed set of lobes that surfaces are made of: a lobe as plain data, and what can be asked of it, over any number
+// type. Local frame of the lobe, z its normal; wo above it. Densities per solid angle of wi.
+//   evaluate(lobe, wi, wo)   f cos(theta_i) with the lobe's weight and colour, and the density of sample()
+//   sample(lobe, wo, u)      a direction; where evaluate() is zero there, its contribution is zero, and it counts
+//   logPdf(lobe, wi, wo)     ln of the density, also where that underflows
+//   weight(lobe, wi, wo)     f cos / pdf at a sampled direction, without cancellation
+//   isDelta(kind)            one direction alone: evaluate() is zero, weight() is f cos / pdf as ever
+//   transmits(kind)          wi lies below the surface
+// A lobe either reflects or transmits: glass is two of them.
+#pragma once
+
+#include "bsdf/ashikhmin.h"
+#include "bsdf/dielectric.h"
+#include "bsdf/oren_nayar.h"
+#include "bsdf/phong.h"
+#include "bsdf/sheen.h"
+#include "bsdf/ward.h"
+
+namespace wardmis {
+
+enum class LobeKind : uint8_t {
+  kLambert,
+  kOrenNayar,  // a, b, and in f0 the multiple of its light that is reflected more than once
+  kBurley,     // a: roughness
+  kTranslucent,
+  kRoughTranslucent,  // Oren-Nayar, mirrored to below
+  kWard,              // ax, ay
+  kWardDur,
+  kWardGmd,
+  kPhong,  // a: exponent m
+  kGgx,    // ax, ay, masking; facets by fresnel
+  kBeckmann,
+  kAshikhminShirley,  // ax, ay
+  kClearcoat,         // ax
+  kVelvet,            // a: sigma
+  kSchlickSheen,
+  kFibres,         // a, b: scale and skew
+  kGgxRefraction,  // as kGgx; facets let pass what fresnel does not reflect
+  kBeckmannRefraction,
+  kThinTransmission,  // kGgx, mirrored to below
+  kMirror,            // facets by fresnel
+  kSharpRefraction,
+  kTransparent,
+};
+inline constexpr int kLobeKinds = 22;
+
+// Reflectance of a facet at a cosine.
+enum class Fresnel : uint8_t {
+  kNone,        // 1; and of refraction nothing, except in total internal reflection
+  kDielectric,  // eta's own
+  kBlended,     // f0 at normal incidence, white at grazing, in between as eta's own goes, but never less than f0
+  kTinted,      // eta's own, times f0 at normal incidence and white at grazing
+  kF82,         // f0, edge (dielectric.h)
+};
+
+struct Lobe {
+  LobeKind kind = LobeKind::kLambert;
+  Fresnel fresnel = Fresnel::kNone;
+  Masking masking = Masking::kCorrelated;
+  uint8_t frame = 0;  // which normal and tangent, for whoever has several
+  Rgb weight{1, 1, 1};
+  float ax = 1, ay = 1;
+  float eta = 1;  // of the side below over that above
+  Rgb f0{1, 1, 1}, edge{0, 0, 0};
+  float a = 0, b = 0;
+};
+
+template <class T>
+struct LobeValue {
+  Vec3<T> fCos;  // sr^-1, of the three channels
+  T pdf;         // sr^-1
+};
+
+constexpr bool isDelta(LobeKind kind) { return kind >= LobeKind::kMirror; }
+constexpr bool transmits(LobeKind kind) {
+  return kind == LobeKind::kTranslucent || kind == LobeKind::kRoughTranslucent ||
+         (kind >= LobeKind::kGgxRefraction && kind != LobeKind::kMirror);
+}
+
+template <class T>
+constexpr Vec3<T> rgb(Rgb c) {
+  return {T(c.x), T(c.y), T(c.z)};
+}
+template <class T>
+constexpr Vec3<T> flipped(Vec3<T> w) {
+  return {w.x, w.y, -w.z};
+}
+
+// Reflectance of a facet, c = wo.m.
+template <class T>
+inline Vec3<T> reflectance(const Lobe& l, T c) {
+  switch (l.fresnel) {
+    case Fresnel::kDielectric: {
+      const T f = fresnelDielectric(c, T(l.eta));
+      return {f, f, f};
+    }
+    case Fresnel::kBlended:
+    case Fresnel::kTinted: {
+      const T s = fresnelBlend(c, T(l.eta)),
+              own = l.fresnel == Fresnel::kTinted ? fresnelDielectric(c, T(l.eta)) : T(1);
+      return (rgb<T>(l.f0) * (T(1) - s) + Vec3<T>{s, s, s}) * own;
+    }
+    case Fresnel::kF82:
+      return {fresnelF82(c, T(l.f0.x), T(l.edge.x)), fresnelF82(c, T(l.f0.y), T(l.edge.y)),
+              fresnelF82(c, T(l.f0.z), T(l.edge.z))};
+    case Fresnel::kNone:
+      break;
+  }
+  return {T(1), T(1), T(1)};
+}
+template <class T>
+inline Vec3<T> transmittance(const Lobe& l, T c) {
+  if (!(etaSquaredMinus1(T(l.eta)) + c * c > T(0))) return {};
+  const Vec3<T> all{T(1), T(1), T(1)};
+  if (l.fresnel == Fresnel::kTinted) return all * (T(1) - fresnelDielectric(c, T(l.eta)));
+  return l.fresnel == Fresnel::kNone ? all : all - reflectance(l, c);
+}
+
+namespace detail {
+
+template <class T>
+inline Vec3<T> reflectedColor(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
+  if (l.fresnel == Fresnel::kNone) return rgb<T>(l.weight);
+  return rgb<T>(l.weight) * reflectance(l, std::min(T(0.5) * length(wi + wo), T(1)));  // wo.h = |wi + wo|/2
+}
+template <class T>
+inline Vec3<T> refractedColor(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
+  const Vec3<T> h = scaled(refractionHalf(wi, wo, T(l.eta)));
+  return rgb<T>(l.weight) * transmittance(l, std::min(dot(wo, h) / length(h), T(1)));
+}
+template <class T>
+inline LobeValue<T> colored(Vec3<T> color, MicrofacetValue<T> v) {
+  return {color * v.fCos, v.pdf};
+}
+// f of the diffuse lobes, sampled by the cosine; both directions above.
+template <class T>
+inline Vec3<T> diffuseF(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
+  const T lambert = T(1) / kPi<T>;
+  switch (l.kind) {
+    case LobeKind::kOrenNayar:
+    case LobeKind::kRoughTranslucent: {
+      const OrenNayar<T> model{T(l.a), T(l.b)};
+      const T once = orenNayarF(wi, wo, model.a, model.b), rest = T(1) - model.albedo(wi.z);
+      return rgb<T>(l.weight) * (Vec3<T>{once, once, once} + rgb<T>(l.f0) * rest);
+    }
+    case LobeKind::kBurley:
+      return rgb<T>(l.weight) * burleyF(wi, wo, T(l.a));
+    case LobeKind::kVelvet:
+      return rgb<T>(l.weight) * (velvetFCos(wi, wo, T(l.a)) / wi.z);
+    case LobeKind::kSchlickSheen:
+      return rgb<T>(l.weight) * (schlickSheenFCos(wi, wo) / wi.z);
+    default:
+      return rgb<T>(l.weight) * lambert;
+  }
+}
+constexpr bool isDiffuse(LobeKind k) {
+  return k <= LobeKind::kRoughTranslucent || k == LobeKind::kVelvet || k == LobeKind::kSchlickSheen;
+}
+constexpr WardVariant wardVariant(LobeKind k) {
+  return static_cast<WardVariant>(static_cast<int>(k) - static_cast<int>(LobeKind::kWard));
+}
+// Lobes that are mirrored to below are asked with wi turned over.
+constexpr bool isMirrored(LobeKind k) {
+  return k == LobeKind::kTranslucent || k == LobeKind::kRoughTranslucent || k == LobeKind::kThinTransmission;
+}
+
+}  // namespace detail
+
+template <class T>
+LobeValue<T> evaluate(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
+  using namespace detail;
+  const T ax = T(l.ax), ay = T(l.ay);
+  if (isMirrored(l.kind)) wi = flipped(wi);
+  if (isDiffuse(l.kind)) {
+    if (!(wi.z > T(0)) || !(wo.z > T(0))) return {};
+    return {diffuseF(l, wi, wo) * wi.z, wi.z * (T(1) / kPi<T>)};
+  }
+  switch (l.kind) {
+    case LobeKind::kWard:
+    case LobeKind::kWardDur:
+    case LobeKind::kWardGmd: {
+      const WardValue<T> v = wardEvaluate(wardVariant(l.kind), wi, wo, T(1) / ax, T(1) / ay);
+      return {rgb<T>(l.weight) * v.fCos, v.pdf};
+    }
+    case LobeKind::kPhong: {
+      if (!(wo.z > T(0))) return {};
+      const PhongValue<T> v = phongEvaluate(phongCosGamma(wi, wo), T(l.a));
+      return {rgb<T>(l.weight) * (v.f * std::max(wi.z, T(0))), v.pdf};
+    }
+    case LobeKind::kGgx:
+      return colored(reflectedColor(l, wi, wo), microfacetEvaluate<Distribution::kGgx>(l.masking, wi, wo, ax, ay));
+    case LobeKind::kBeckmann:
+      return colored(reflectedColor(l, wi, wo), microfacetEvaluate<Distribution::kBeckmann>(l.masking, wi, wo, ax, ay));
+    case LobeKind::kThinTransmission:
+      return colored(rgb<T>(l.weight), microfacetEvaluate<Distribution::kGgx>(l.masking, wi, wo, ax, ay));
+    case LobeKind::kGgxRefraction:
+      return colored(refractedColor(l, wi, wo),
+                     refractionEvaluate<Distribution::kGgx>(l.masking, wi, wo, ax, ay, T(l.eta)));
+    case LobeKind::kBeckmannRefraction:
+      return colored(refractedColor(l, wi, wo),
+                     refractionEvaluate<Distribution::kBeckmann>(l.masking, wi, wo, ax, ay, T(l.eta)));
+    case LobeKind::kAshikhminShirley: {
+      const T pdf = ashikhminPdf(wi, wo, ax, ay);
+      return {rgb<T>(l.weight) * (pdf * ashikhminWeight(wi, wo)), pdf};
+    }
+    case LobeKind::kClearcoat:
+      return colored(reflectedColor(l, wi, wo), clearcoatEvaluate(wi, wo, ax));
+    case LobeKind::kFibres: {
+      const T pdf = wo.z > T(0) ? fibrePdf(wi, wo, T(l.a), T(l.b)) : T(0);
+      return {rgb<T>(l.weight) * pdf, pdf};
+    }
+    default:
+      return {};
+  }
+}
+
+template <class T>
+Vec3<T> sample(const Lobe& l, Vec3<T> wo, Vec2<T> u) {
+  const T ax = T(l.ax), ay = T(l.ay);
+  switch (l.kind) {
+    case LobeKind::kWard:
+    case LobeKind::kWardDur:
+    case LobeKind::kWardGmd:
+      return wardSample(wo, ax, ay, u);
+    case LobeKind::kPhong:
+      return phongSample(wo, T(l.a), u);
+    case LobeKind::kGgx:
+      return microfacetSample<Distribution::kGgx>(wo, ax, ay, u);
+    case LobeKind::kBeckmann:
+      return microfacetSample<Distribution::kBeckmann>(wo, ax, ay, u);
+    case LobeKind::kThinTransmission:
+      return flipped(microfacetSample<Distribution::kGgx>(wo, ax, ay, u));
+    case LobeKind::kGgxRefraction:
+      return refractionSample<Distribution::kGgx>(wo, ax, ay, T(l.eta), u);
+    case LobeKind::kBeckmannRefraction:
+      return refractionSample<Distribution::kBeckmann>(wo, ax, ay, T(l.eta), u);
+    case LobeKind::kAshikhminShirley:
+      return ashikhminSample(wo, ax, ay, u);
+    case LobeKind::kClearcoat:
+      return clearcoatSample(wo, ax, u);
+    case LobeKind::kFibres:
+      return fibreSample(wo, T(l.a), T(l.b), u);
+    case LobeKind::kMirror:
+      return {-wo.x, -wo.y, wo.z};
+    case LobeKind::kSharpRefraction: {
+      Vec3<T> wi{-wo.x, -wo.y, wo.z};
+      refracted(wo, Vec3<T>{0, 0, 1}, T(l.eta), wi);
+      return wi;
+    }
+    case LobeKind::kTransparent:
+      return -wo;
+    case LobeKind::kTranslucent:
+    case LobeKind::kRoughTranslucent:
+      return flipped(toCosineHemisphere(u));
+    default:
+      return toCosineHemisphere(u);
+  }
+}
+
+template <class T>
+T logPdf(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
+  const T ax = T(l.ax), ay = T(l.ay);
+  switch (l.kind) {
+    case LobeKind::kWard:
+    case LobeKind::kWardDur:
+    case LobeKind::kWardGmd:
+      return wardLogPdf(wi, wo, T(1) / ax, T(1) / ay);
+    case LobeKind::kPhong:
+      return wo.z > T(0) ? phongLogPdf(phongCosGamma(wi, wo), T(l.a)) : -std::numeric_limits<T>::infinity();
+    case LobeKind::kGgx:
+      return microfacetLogPdf<Distribution::kGgx>(wi, wo, ax, ay);
+    case LobeKind::kBeckmann:
+      return microfacetLogPdf<Distribution::kBeckmann>(wi, wo, ax, ay);
+    case LobeKind::kBeckmannRefraction:
+      return refractionLogPdf<Distribution::kBeckmann>(wi, wo, ax, ay, T(l.eta));
+    case LobeKind::kAshikhminShirley:
+      return ashikhminLogPdf(wi, wo, ax, ay);
+    default:
+      return std::log(evaluate(l, wi, wo).pdf);
+  }
+}
+
+template <class T>
+Vec3<T> weight(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
+  using namespace detail;
+  const T ax = T(l.ax), ay = T(l.ay);
+  const Vec3<T> white = rgb<T>(l.weight);
+  if (!(wo.z > T(0)) || (wi.z < T(0)) != transmits(l.kind)) return {};
+  if (isMirrored(l.kind)) wi = flipped(wi);
+  if (isDiffuse(l.kind)) return wi.z > T(0) ? diffuseF(l, wi, wo) * kPi<T> : Vec3<T>{};
+  switch (l.kind) {
+    case LobeKind::kWard:
+    case LobeKind::kWardDur:
+    case LobeKind::kWardGmd:
+      return white * wardWeight(wardVariant(l.kind), wi, wo);
+    case LobeKind::kPhong:
+      return white * phongWeight(phongCosGamma(wi, wo), std::max(wi.z, T(0)), T(l.a));
+    case LobeKind::kGgx:
+      return reflectedColor(l, wi, wo) * microfacetWeight<Distribution::kGgx>(l.masking, wi, wo, ax, ay);
+    case LobeKind::kBeckmann:
+      return reflectedColor(l, wi, wo) * microfacetWeight<Distribution::kBeckmann>(l.masking, wi, wo, ax, ay);
+    case LobeKind::kThinTransmission:
+      return white * microfacetWeight<Distribution::kGgx>(l.masking, wi, wo, ax, ay);
+    case LobeKind::kGgxRefraction:
+      return refractedColor(l, wi, wo) * refractionWeight<Distribution::kGgx>(l.masking, wi, wo, ax, ay);
+    case LobeKind::kBeckmannRefraction:
+      return refractedColor(l, wi, wo) * refractionWeight<Distribution::kBeckmann>(l.masking, wi, wo, ax, ay);
+    case LobeKind::kAshikhminShirley:
+      return white * ashikhminWeight(wi, wo);
+    case LobeKind::kClearcoat:
+      return reflectedColor(l, wi, wo) * clearcoatWeight(wi, wo);
+    case LobeKind::kMirror:
+      return white * reflectance(l, wo.z);
+    case LobeKind::kSharpRefraction:
+      return white * transmittance(l, wo.z);
+    default:
+      return white;
+  }
+}
+
+}  // namespace wardmis
