@@ -33,7 +33,7 @@ struct Parameter {
   float low = -FLT_MAX, high = FLT_MAX;
   bool required = false;
   int columns = 0;
-  std::array<std::string_view, 5> choices{};
+  std::array<std::string_view, 8> choices{};
 };
 
 // What of the place a program asks for beyond position, normals and the direction of view, for the integrator to fill.
@@ -58,7 +58,7 @@ inline constexpr Parameter kSet{"set", kName};
 inline constexpr Parameter kAttributeName{"name", kName, 0, 0, 0, true};
 inline constexpr Parameter kUnassociate{"unassociate", kBoolean};
 inline constexpr Parameter kImageTexture{"texture", kTexture, 0, 0, 0, true};
-inline constexpr std::array<std::string_view, 5> kSpaces{"world", "object", "camera"};
+inline constexpr std::array<std::string_view, 8> kSpaces{"world", "object", "camera"};
 
 inline constexpr std::array<Parameter, 0> none{};
 inline constexpr std::array shifted{kShift, kWidth};
@@ -93,6 +93,46 @@ inline constexpr std::array imageBox{kImageTexture, kUnassociate, Parameter{"ble
 inline constexpr std::array environment{
     kImageTexture, kUnassociate,
     Parameter{"projection", kChoice, 0, 0, 0, false, 0, {"equirectangular", "mirror-ball"}}};
+
+// Of patterns: in the order of the settings' enumerators in native/pattern.
+inline constexpr Parameter kDimensions{"dimensions", kInteger, 3, 1, 4};
+inline constexpr Parameter kFractalType{
+    "type", kChoice, 0, 0,
+    0,      false,   0, {"fbm", "multifractal", "hybrid-multifractal", "ridged-multifractal", "hetero-terrain"}};
+inline constexpr std::array noise{kDimensions, kFractalType, Parameter{"normalize", kBoolean, 1}, kVersionParameter};
+inline constexpr std::array musgrave{kDimensions, kFractalType};
+inline constexpr std::array voronoi{
+    kDimensions,
+    Parameter{"feature", kChoice, 0, 0, 0, false, 0, {"f1", "f2", "smooth-f1", "distance-to-edge", "n-sphere-radius"}},
+    Parameter{"metric", kChoice, 0, 0, 0, false, 0, {"euclidean", "manhattan", "chebychev", "minkowski"}},
+    Parameter{"normalize", kBoolean, 0},
+    kVersionParameter,
+};
+inline constexpr std::array gabor{Parameter{"dimensions", kInteger, 2, 2, 3}};
+inline constexpr std::array wave{
+    Parameter{"shape", kChoice, 0, 0, 0, false, 0, {"bands", "rings"}},
+    Parameter{"axis", kChoice, 0, 0, 0, false, 0, {"x", "y", "z", "all"}},
+    Parameter{"profile", kChoice, 0, 0, 0, false, 0, {"sine", "saw", "triangle"}},
+    kVersionParameter,
+};
+inline constexpr std::array magic{Parameter{"depth", kInteger, 2, 0, 10}, kVersionParameter};
+inline constexpr std::array gradient{
+    Parameter{"type",
+              kChoice,
+              0,
+              0,
+              0,
+              false,
+              0,
+              {"linear", "quadratic", "easing", "diagonal", "spherical", "quadratic-sphere", "radial"}}};
+inline constexpr std::array dimensions{kDimensions};
+inline constexpr std::array brick{
+    Parameter{"offset", kNumber, 0.5f},
+    Parameter{"offsetFrequency", kInteger, 2, 0, 99},
+    Parameter{"squash", kNumber, 1},
+    Parameter{"squashFrequency", kInteger, 2, 0, 99},
+    kVersionParameter,
+};
 
 }  // namespace parameters
 
@@ -294,7 +334,27 @@ inline constexpr std::array environment{
   X(kImageBox, "image-box", kVector, "vv", imageBox, kReadsNothing) \
   X(kImageBoxAlpha, "image-box-alpha", kNumber, "vv", imageBox, kReadsNothing) \
   X(kEnvironment, "environment", kVector, "v", environment, kReadsNothing) \
-  X(kEnvironmentAlpha, "environment-alpha", kNumber, "v", environment, kReadsNothing)
+  X(kEnvironmentAlpha, "environment-alpha", kNumber, "v", environment, kReadsNothing) \
+  /* patterns: kNoise is the first, and nothing else comes after it */ \
+  X(kNoise, "noise", kNumber, "vnnnnnnnn", noise, kReadsNothing) \
+  X(kNoiseColor, "noise-color", kVector, "vnnnnnnnn", noise, kReadsNothing) \
+  X(kMusgrave, "musgrave", kNumber, "vnnnnnnn", musgrave, kReadsNothing) \
+  X(kVoronoiDistance, "voronoi-distance", kNumber, "vnnnnnnnn", voronoi, kReadsNothing) \
+  X(kVoronoiColor, "voronoi-color", kVector, "vnnnnnnnn", voronoi, kReadsNothing) \
+  X(kVoronoiPosition, "voronoi-position", kVector, "vnnnnnnnn", voronoi, kReadsNothing) \
+  X(kVoronoiW, "voronoi-w", kNumber, "vnnnnnnnn", voronoi, kReadsNothing) \
+  X(kVoronoiRadius, "voronoi-radius", kNumber, "vnnnnnnnn", voronoi, kReadsNothing) \
+  X(kGaborValue, "gabor-value", kNumber, "vnnnnv", gabor, kReadsNothing) \
+  X(kGaborPhase, "gabor-phase", kNumber, "vnnnnv", gabor, kReadsNothing) \
+  X(kGaborIntensity, "gabor-intensity", kNumber, "vnnnnv", gabor, kReadsNothing) \
+  X(kWave, "wave", kNumber, "vnnnnnn", wave, kReadsNothing) \
+  X(kMagic, "magic", kVector, "vnn", magic, kReadsNothing) \
+  X(kChecker, "checker", kNumber, "vn", none, kReadsNothing) \
+  X(kGradient, "gradient", kNumber, "v", gradient, kReadsNothing) \
+  X(kWhiteNoise, "white-noise", kNumber, "vn", dimensions, kReadsNothing) \
+  X(kWhiteNoiseColor, "white-noise-color", kVector, "vn", dimensions, kReadsNothing) \
+  X(kBrick, "brick", kVector, "vvvvnnnnnn", brick, kReadsNothing) \
+  X(kBrickFactor, "brick-factor", kNumber, "vnnnnnn", brick, kReadsNothing)
 // clang-format on
 
 enum class Operation : uint16_t {

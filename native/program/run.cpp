@@ -2,6 +2,7 @@
 #include "program/run.h"
 
 #include "program/operands.h"
+#include "program/patterns.h"
 #include "program/place.h"
 #include "program/spectrum.h"
 #include "program/surface.h"
@@ -464,7 +465,10 @@ void run(const Program& program, const ShadingContext& c, const TextureAccess& t
         o.set(o.image().at(textures, images::environmentPoint(o.v(0), o.word(3))).alpha);
         break;
       default:
-        place::read(i.operation, o, c);
+        if (i.operation < kNoise)
+          place::read(i.operation, o, c);
+        else
+          patterns::run(i.operation, o);
     }
   }
 }
