@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// libFuzzer: readGlb either reads its input or throws Error; nothing else may happen.
+// libFuzzer: readGlb either reads its input or throws Error, and programs that it read run; nothing else may happen.
 //   cmake -B build-fuzz -DCMAKE_CXX_COMPILER=clang++ -DWARDMIS_FUZZ=ON -DWARDMIS_SANITIZE=ON -DWARDMIS_OIIO=OFF
 //   -DWARDMIS_TESTS=OFF cmake --build build-fuzz --target fuzz_glb build-fuzz/fuzz_glb
 //   -dict=tests/native/gltf/glb.dict -max_total_time=60 /tmp/corpus tests/native/gltf/corpus
@@ -10,6 +10,7 @@
 #include "glb_builder.h"
 #include "gltf/reader.h"
 #include "math/error.h"
+#include "program/run.h"
 #include "scene/defaults.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {  // NOLINT(readability-identifier-naming)
@@ -28,6 +29,12 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {  // NO
   try {
     Scene scene = readGlb(file, {}, "fuzz.glb");
     addDefaults(scene);
+    // what is read must run, wherever it is
+    for (const Material& m : scene.materials) {
+      if (!m.program) continue;
+      Slots slots;
+      run(*m.program, ShadingContext(), {scene.textures.data(), scene.images.data()}, slots);
+    }
   } catch (const Error&) {
   }
   return 0;

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "glb_support.h"
+#include <set>
+
+#include "every_operation.h"
 #include "program/programs.h"
 
 namespace wardmis {
@@ -175,6 +177,16 @@ TEST(Programs, KeepOnlyWhatInputsNeed) {
   // an input that is black needs nothing
   const auto black = read(withProgram(operations, {{"diffuse", {{"value", {0, 0, 0}}, {"result", 1}}}}).bytes());
   EXPECT_EQ(black.materials[0].diffuse.result, -1);
+}
+
+TEST(Programs, MayHaveEveryOperation) {
+  const Scene scene = read(withEveryOperation().bytes());
+  const Program& p = *scene.materials[0].program;
+  std::set<Operation> used;
+  for (const Instruction& i : p.instructions) used.insert(i.operation);
+  EXPECT_EQ(used.size(), kOperationCount);
+  EXPECT_EQ(scene.materials[0].index, 2);
+  EXPECT_EQ(p.reads, kReadsShift | kReadsAttributes | kReadsGenerated | kReadsObject | kReadsCamera | kReadsRay);
 }
 
 TEST(Programs, AskForVertexDataByName) {

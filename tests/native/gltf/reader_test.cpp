@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "glb_support.h"
+#include "every_operation.h"
 
 namespace wardmis {
 namespace {
@@ -780,8 +780,9 @@ TEST(Glb, ReadsTheCorpus) {
     foreign.root["nodes"][0]["children"] = {1};
     foreign.add("nodes", {{"mesh", 0}});
     foreign.root["scenes"] = {{{"nodes", {1}}}};
-    const std::pair<const char*, GlbBuilder> seeds[] = {
-        {"square", square()}, {"everything", everything()}, {"sparse", sparse}, {"png", png}, {"foreign", foreign}};
+    const std::pair<const char*, GlbBuilder> seeds[] = {{"square", square()}, {"everything", everything()},
+                                                        {"sparse", sparse},   {"png", png},
+                                                        {"foreign", foreign}, {"program", withEveryOperation()}};
     for (const auto& [name, b] : seeds) {
       const Bytes bytes = seed(b);
       std::ofstream(fs::path(to) / name, std::ios::binary)
