@@ -183,6 +183,12 @@ def world_of(view_layer: Any, scene: Any) -> Any:
     return getattr(view_layer, "world_override", None) or scene.world
 
 
+def world_is_seen_by(world: Any, ray: str) -> bool:
+    """Whether a "camera", "diffuse" or "glossy" ray sees it; it is Cycles' setting, and gone where that add-on is off."""
+    settings: Any = getattr(world, "cycles_visibility", None)
+    return settings is None or bool(getattr(settings, ray))
+
+
 def uses_nodes(owner: Any) -> bool:
     """Whether a light or a world is made by its node tree. From 5.0 `use_nodes` is always true and deprecated."""
     return owner.node_tree is not None and (VERSION >= (5, 0, 0) or owner.use_nodes)
@@ -192,8 +198,8 @@ def uses_nodes(owner: Any) -> bool:
 
 # Cycles is given trees without groups, reroutes and muted nodes, which convert nothing any more.
 NODE_TREES_ARE_INLINED = VERSION >= (5, 0, 0)
-# Cycles takes the word of an image's Alpha Mode that a file's colours are multiplied by alpha; before it did so itself.
-PREMULTIPLIED_FILES_ARE_TRUSTED = VERSION >= (5, 0, 0)
+# Cycles takes the word of an image's Alpha Mode whether colours are multiplied by alpha; before, those of floats were, others not.
+ALPHA_MODES_ARE_TRUSTED = VERSION >= (5, 1, 0)
 
 
 def add_group_socket(tree: Any, name: str, kind: str, in_out: str) -> Any:

@@ -48,8 +48,8 @@ Verb addInfo(CLI::App& app) {
     addDefaults(scene);
     requireMemoryFor(scene);
     Geometry geometry(scene);
-    const Environment environment(scene);
-    const Emitters emitters(scene, geometry, environment);
+    const std::vector<Environment> environments = environmentsOf(scene);
+    const Emitters emitters(scene, geometry, environments);
     uint32_t n = needs(scene, geometry, emitters, o->integrand == "joint");
     if (o->integrator == "path") n |= kNeedsBounces;
     const std::vector<std::string> left = leftOut(scene, n, emitters);
@@ -87,11 +87,11 @@ Verb addInfo(CLI::App& app) {
     if (scene.degenerateTriangles > 0)
       fmt::print("              {} triangles without area were dropped\n", scene.degenerateTriangles);
     fmt::print("  materials   {}, textures {}\n", scene.materials.size(), scene.images.size());
+    std::string skies;
+    for (const Environment& e : environments)
+      if (e.exists()) skies += (skies.empty() ? "" : ", ") + std::string(e.world().texture >= 0 ? "image" : "constant");
     fmt::print("  lights      {}, emissive triangles {}, environment {}\n", scene.lights.size(),
-               emitters.emissiveTriangles(),
-               !environment.exists()      ? "none"
-               : scene.world.texture >= 0 ? "image"
-                                          : "constant");
+               emitters.emissiveTriangles(), skies.empty() ? "none" : skies);
     fmt::print("  needs       {}\n", describe(n));
     for (const auto& [material, operations] : programs) {
       std::string text;

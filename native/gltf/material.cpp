@@ -88,9 +88,9 @@ std::string Materials::described(int index) const {
   return name.empty() ? "a material without a name" : "material '" + name + "'";
 }
 
-void Materials::useWorldTexture(const Json& index) {
+int Materials::worldTexture(const Json& index) {
   user_ = "the world";
-  worldTexture_ = texture(index, true);
+  return texture(index, true);
 }
 
 Material Materials::ward(const Json& extension) {
@@ -471,8 +471,7 @@ void Materials::finish(Scene& scene) {
         channel = channel == 3 ? channels - 1 : channels < 3 ? 0 : channel;
     }
   }
-  keep(worldTexture_);
-  scene.world.texture = worldTexture_;
+  for (World& w : scene.worlds) keep(w.texture);
   scene.materials = std::move(read_.materials);
 
   for (size_t i = 0; i < materials_.size(); i++)

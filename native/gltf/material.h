@@ -24,8 +24,8 @@ class Materials {
   int uvSet(int material) const;
   std::string described(int material) const;  // for messages
   const Program* program(int material) const { return read_.materials[material].program.get(); }
-  // The world's texture; its index in Scene::textures is known after finish().
-  void useWorldTexture(const Json& index);
+  // A world's texture; finish() makes of it the index in Scene::textures.
+  int worldTexture(const Json& index);
 
   // Decodes the images and moves everything into the scene.
   void finish(Scene& scene);
@@ -77,7 +77,6 @@ class Materials {
   std::map<std::pair<size_t, Encoding>, int> imageOf_;
   std::vector<PendingImage> pending_;  // of read_.images
   std::vector<Bake> bakes_;
-  int worldTexture_ = -1;
 };
 
 }  // namespace wardmis

@@ -115,15 +115,8 @@ const Affine& NodeForest::world(size_t i) {
 }
 
 uint8_t visibility(const Json& node) {
-  constexpr std::pair<std::string_view, Visibility> kKinds[] = {
-      {"camera", kSeenByCamera}, {"diffuse", kSeenByDiffuse}, {"glossy", kSeenByGlossy}, {"shadow", kCastsShadow}};
   const auto extension = node.extension(kExtension);
-  const auto list = extension ? extension->find("visibility") : std::nullopt;
-  if (!list) return kSeenByAll;
-  uint8_t bits = 0;
-  const JsonArray kinds = list->array();
-  for (size_t i = 0; i < kinds.size(); i++) bits |= kinds[i].choice(kKinds);
-  return bits;
+  return extension ? readVisibility(*extension) : uint8_t{kSeenByAll};
 }
 
 // What programs read of the object; null where the node says nothing.
@@ -192,6 +185,17 @@ std::vector<Affine> instanceMatrices(const Json& extension, Accessors& accessors
 }
 
 }  // namespace
+
+uint8_t readVisibility(const Json& json) {
+  constexpr std::pair<std::string_view, Visibility> kKinds[] = {
+      {"camera", kSeenByCamera}, {"diffuse", kSeenByDiffuse}, {"glossy", kSeenByGlossy}, {"shadow", kCastsShadow}};
+  const auto list = json.find("visibility");
+  if (!list) return kSeenByAll;
+  uint8_t bits = 0;
+  const JsonArray kinds = list->array();
+  for (size_t i = 0; i < kinds.size(); i++) bits |= kinds[i].choice(kKinds);
+  return bits;
+}
 
 void readNodes(const Json& root, Accessors& accessors, Buffers& buffers, Meshes& meshes, LeftOut& leftOut,
                bool needsCamera, Scene& scene) {

@@ -11,6 +11,9 @@
 
 namespace wardmis {
 
+// Of what kinds of ray an object, a light or a world is seen: its "visibility".
+uint8_t readVisibility(const Json& json);
+
 // Fills the scene's instances, lights and camera. The film must have been read. needsCamera: throws if there is none,
 // before meshes are read.
 void readNodes(const Json& root, Accessors& accessors, Buffers& buffers, Meshes& meshes, LeftOut& leftOut,

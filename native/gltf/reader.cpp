@@ -20,6 +20,7 @@ namespace {
 
 constexpr const char* kExtension = "WARDMIS_scene";
 constexpr int kLargestSide = 1 << 16;
+constexpr size_t kMostWorlds = 16;  // each has a table of its own; an exporter needs one for each kind of ray
 
 void checkVersion(const Json& root) {
   const Json version = root.at("asset").at("version");
@@ -98,6 +99,22 @@ void readWorldMatrix(const Json& json, float (&matrix)[9]) {
     json.fail("it has no inverse: directions of the sky cannot be told from it", "use a rotation, or leave it out");
 }
 
+World readWorld(const Json& json, Materials& materials) {
+  constexpr std::pair<std::string_view, SkyMap> kMaps[] = {{"equirectangular", SkyMap::kEquirectangular},
+                                                           {"mirror-ball", SkyMap::kMirrorBall}};
+  World world;
+  const auto texture = json.find("texture");
+  world.radiance = json.lightOr("radiance", texture ? Rgb{1, 1, 1} : Rgb{0, 0, 0});
+  world.visibility = readVisibility(json);
+  world.maxBounces = static_cast<int>(json.integerOr("maxBounces", world.maxBounces, 0, 1 << 20));
+  if (texture && !isBlack(world.radiance)) {
+    world.texture = materials.worldTexture(texture->at("index"));
+    if (const auto map = texture->find("projection")) world.map = map->choice(kMaps);
+    if (const auto matrix = texture->find("matrix")) readWorldMatrix(*matrix, world.matrix);
+  }
+  return world;
+}
+
 Scene read(const Bytes& file, const std::filesystem::path& folder, const std::string& name, bool needsCamera) {
   LeftOut leftOut;
   const GlbChunks chunks = splitGlb(file, name, leftOut);
@@ -125,12 +142,14 @@ Scene read(const Bytes& file, const std::filesystem::path& folder, const std::st
       scene.hasFilm = true;
     }
     if (const auto world = own->find("world")) {
-      const auto texture = world->find("texture");
-      scene.world.radiance = world->lightOr("radiance", texture ? Rgb{1, 1, 1} : Rgb{0, 0, 0});
-      if (texture && !isBlack(scene.world.radiance)) {
-        materials.useWorldTexture(texture->at("index"));
-        if (const auto matrix = texture->find("matrix")) readWorldMatrix(*matrix, scene.world.matrix);
+      if (world->isObject()) {
+        scene.worlds.push_back(readWorld(*world, materials));
+      } else {
+        const JsonArray worlds = world->array();
+        if (worlds.size() > kMostWorlds) world->failExpected(fmt::format("at most {} worlds", kMostWorlds));
+        for (size_t i = 0; i < worlds.size(); i++) scene.worlds.push_back(readWorld(worlds[i], materials));
       }
+      std::erase_if(scene.worlds, [](const World& w) { return isBlack(w.radiance); });
     }
     const JsonArray notes = own->array("notes");
     for (size_t i = 0; i < notes.size(); i++) scene.notes.emplace_back(notes[i].string());

@@ -30,7 +30,7 @@ int tilesAcross(int pixels) { return (pixels + kTileSize - 1) / kTileSize; }
 
 // Whether rays of the surface's techniques can find light.
 bool surfaceRays(const BuiltScene& built, uint32_t needs) {
-  return built.emitters.anyShared() || built.environment.exists() || (needs & kNeedsBounces) != 0;
+  return built.emitters.anyShared() || built.emitters.anySky() || (needs & kNeedsBounces) != 0;
 }
 
 // Whether there is light that takes away from other light.
@@ -47,7 +47,9 @@ bool negativeLight(const Scene& scene) {
     if (negative(m.emission.value) || m.emission.result >= 0 ||  // what a program makes may be anything
         (!isBlack(m.emission.value) && texels(m.emission.texture.texture)))
       return true;
-  return negative(scene.world.radiance) || (!isBlack(scene.world.radiance) && texels(scene.world.texture));
+  for (const World& w : scene.worlds)
+    if (negative(w.radiance) || (!isBlack(w.radiance) && texels(w.texture))) return true;
+  return false;
 }
 
 template <size_t K>
@@ -80,8 +82,8 @@ SampleCost<K> givenCost(const GivenCost& given) {
 BuiltScene::BuiltScene(const Scene& s, int threads)
     : scene(renderable(s)),
       geometry((seconds = wallSeconds(), s)),
-      environment(s),
-      emitters(s, geometry, environment),
+      environments(environmentsOf(s)),
+      emitters(s, geometry, environments),
       accel(geometry, threads) {
   seconds = wallSeconds() - seconds;
 }

@@ -21,7 +21,7 @@ struct BuiltScene {
   double seconds = 0;  // that the building took
   const Scene& scene;
   Geometry geometry;
-  Environment environment;
+  std::vector<Environment> environments;
   Emitters emitters;
   Accel accel;
 

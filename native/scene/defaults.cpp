@@ -73,7 +73,10 @@ Camera viewOf(const Box& box, const Film& film) {
   return camera;
 }
 
-bool hasLights(const Scene& scene) { return !scene.lights.empty() || maxComponent(scene.world.radiance) > 0; }
+bool hasLights(const Scene& scene) {
+  return !scene.lights.empty() ||
+         std::ranges::any_of(scene.worlds, [](const World& w) { return maxComponent(w.radiance) > 0; });
+}
 
 // What unlit materials show is no light of the scene's.
 bool shines(const Scene& scene) {
@@ -95,8 +98,8 @@ void addDefaults(Scene& scene) {
     scene.notes.emplace_back("the scene has no camera: a view of all that it holds is used (--no-defaults refuses it)");
   }
   if (scene.foreign && !hasLights(scene) && (isModel || !shines(scene))) {
-    scene.world = {};
-    scene.world.radiance = {1, 1, 1};
+    scene.worlds = {World{}};
+    scene.worlds[0].radiance = {1, 1, 1};
     scene.notes.emplace_back("the scene has no lights: a constant sky of radiance 1 is used (--no-defaults adds none)");
   }
 }

@@ -102,6 +102,7 @@ enum Visibility : uint8_t {
   kSeenByDiffuse = 2,
   kSeenByGlossy = 4,
   kCastsShadow = 8,
+  kSeenBySurfaces = kSeenByDiffuse | kSeenByGlossy,
   kSeenByAll = 15
 };
 
@@ -169,10 +170,17 @@ struct Film {
   bool transparent = false;
 };
 
+// How an image holds the directions of a sky: docs/scene-format.md.
+enum class SkyMap : uint8_t { kEquirectangular, kMirrorBall };
+
+// Light from infinitely far. Several are as many skies, one over the other, as a rule for other kinds of ray each.
 struct World {
   Rgb radiance{0, 0, 0};
   int texture = -1;
+  SkyMap map = SkyMap::kEquirectangular;
   float matrix[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major, Z-up direction -> the image's frame
+  uint8_t visibility = kSeenByAll;
+  int maxBounces = 1024;  // as a light's
 };
 
 struct Scene {
@@ -188,7 +196,7 @@ struct Scene {
   Film film;
   bool hasFilm = false;  // the file gave a resolution
   bool foreign = true;   // without WARDMIS_scene: what it does not say, it leaves open
-  World world;
+  std::vector<World> worlds;
   bool zUp = false;                  // frame of the Normal pass and of the world
   std::vector<std::string> notes;    // from the exporter: what it could not translate
   std::vector<std::string> leftOut;  // what the reader did not load, and why

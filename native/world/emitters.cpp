@@ -128,8 +128,8 @@ struct SphericalRectangle {
 
 }  // namespace
 
-Emitters::Emitters(const Scene& scene, Geometry& geometry, const Environment& environment)
-    : scene_(scene), geometry_(geometry), environment_(environment) {
+Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Environment>& environments)
+    : scene_(scene), geometry_(geometry), environments_(environments) {
   const float crossSection = kPif * geometry.radius() * geometry.radius();
   std::vector<double> power;
 
@@ -208,11 +208,17 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const Environment& en
     power.push_back(std::max(w, 0.0));
   }
 
-  if (environment.exists()) {
+  for (uint32_t i = 0; i < environments.size(); ++i) {
+    const Environment& environment = environments[i];
+    if (!environment.exists()) continue;
     infinite_.push_back(static_cast<uint32_t>(lamps_.size()));
     Lamp l{};
     l.kind = Kind::kEnvironment;
+    l.environment = i;
+    l.visibility = environment.world().visibility;
+    l.maxBounces = environment.world().maxBounces;
     lamps_.push_back(l);
+    sky_ |= (l.visibility & kSeenBySurfaces) != 0;
     power.push_back(environment.sampled() ? environment.integral() * crossSection : 0.0);
     shared_ |= environment.sampled();
   }
@@ -441,12 +447,14 @@ LightSample Emitters::sample(Vec3f from, ChoicePoint point, int bounces) const {
       s.pdf = 1 / (lamp.area * cos3);
       break;
     }
-    case Kind::kEnvironment:
+    case Kind::kEnvironment: {
+      const Environment& environment = environments_[lamp.environment];
       s.distance = kFar;
-      s.direction = environment_.sample(point);
-      s.radiance = environment_.radiance(s.direction);
-      s.pdf = environment_.pdf(s.direction);
+      s.direction = environment.sample(point);
+      s.radiance = environment.radiance(s.direction);
+      s.pdf = environment.pdf(s.direction);
       break;
+    }
   }
   s.pdf *= choice;
   s.visibility = lamp.visibility;
@@ -457,7 +465,9 @@ LightSample Emitters::sample(Vec3f from, ChoicePoint point, int bounces) const {
 
 bool Emitters::meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax, EmitterHit& hit) const {
   const Vec3f d = ray.direction;
-  if ((lamp.visibility & ray.kind) == 0) return false;
+  // where two lobes share a technique, both get what any of its rays meets: who sees it is the estimator's to say
+  const int seers = ray.kind == kSeenByCamera ? kSeenByCamera : kSeenBySurfaces;
+  if ((lamp.visibility & seers) == 0) return false;
   float pdf = 0;
   switch (lamp.kind) {
     case Kind::kRectangle:
@@ -523,8 +533,8 @@ bool Emitters::meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax,
       break;
     }
     case Kind::kEnvironment:
-      pdf = environment_.pdf(d);
-      hit.radiance = environment_.radiance(d);
+      pdf = environments_[lamp.environment].pdf(d);
+      hit.radiance = environments_[lamp.environment].radiance(d);
       break;
     case Kind::kDeltaPoint:
     case Kind::kDeltaSun:

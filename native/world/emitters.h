@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Everything that emits, as one list that the light technique picks from in proportion to power: light objects, the
-// environment's image, emissive triangles. Each emitter is an integral of its own: a direction that meets several is
+// images of skies, emissive triangles. Each emitter is an integral of its own: a direction that meets several is
 // weighted for each by itself.
 #pragma once
 
@@ -34,13 +34,15 @@ struct EmitterHit {
 class Emitters {
  public:
   // Fills Placement::firstEmitter.
-  Emitters(const Scene& scene, Geometry& geometry, const Environment& environment);
+  Emitters(const Scene& scene, Geometry& geometry, const std::vector<Environment>& environments);
 
   bool any() const { return !table_.empty(); }
   // Emitters that the surface's techniques meet too, and emitters that they cannot (delta lights, lights without
   // shadows).
   bool anyShared() const { return shared_; }
   bool anyExclusive() const { return exclusive_; }
+  // Whether surfaces see a sky.
+  bool anySky() const { return sky_; }
   uint64_t emissiveTriangles() const { return triangles_; }
 
   // bounces: by which the path has come to `from`.
@@ -85,6 +87,7 @@ class Emitters {
     uint8_t visibility = kSeenByAll;
     bool shadow = true, exclusive = false;
     int maxBounces = std::numeric_limits<int>::max();
+    uint32_t environment = 0;  // its index
   };
   float probability(size_t emitter) const {
     return table_.empty() ? 0 : table_.probability(static_cast<uint32_t>(emitter));
@@ -100,7 +103,7 @@ class Emitters {
 
   const Scene& scene_;
   const Geometry& geometry_;
-  const Environment& environment_;
+  const std::vector<Environment>& environments_;
   std::vector<Lamp> lamps_;
   struct Triangle {
     uint32_t placement, shape, triangle;
@@ -108,7 +111,7 @@ class Emitters {
   std::vector<Triangle> emissive_;           // emitters lamps_.size() ...
   AliasTable table_;                         // over lamps, then emissive triangles
   std::vector<uint32_t> finite_, infinite_;  // indices of the lamps that a ray can meet
-  bool shared_ = false, exclusive_ = false;
+  bool shared_ = false, exclusive_ = false, sky_ = false;
   uint64_t triangles_ = 0;
 };
 

@@ -12,19 +12,31 @@ namespace wardmis {
 namespace {
 
 // Equirectangular coordinates of a direction of any length, z up (docs/scene-format.md): u = 1/2 at +x... as Cycles.
-Vec2f toUv(Vec3f d) {
+Vec2f equirectangular(Vec3f d) {
   const float u = (std::atan2(d.y, d.x) - kPi<float>) / (-2 * kPi<float>);
   const float v = 1 - std::atan2(std::sqrt(d.x * d.x + d.y * d.y), d.z) / kPi<float>;  // acos is coarse at the poles
   return {u, v};
+}
+
+// Those of a mirror ball about z, seen from -z: its disk has the same area for each solid angle, its radius at the
+// angle t from -z is sin(t/2).
+Vec2f mirrorBall(Vec3f d) {
+  const float h2 = d.x * d.x + d.y * d.y, z = d.z / std::sqrt(h2 + d.z * d.z);
+  // sin(t/2)/sin t, without a difference of what is nearly equal
+  const float scale = z < 0    ? 1 / std::sqrt(2 * (1 - z) * (h2 + d.z * d.z))
+                      : h2 > 0 ? std::sqrt((1 + z) / (2 * h2))
+                               : 0;
+  return {0.5f + 0.5f * d.y * scale, 0.5f + 0.5f * d.x * scale};
 }
 
 constexpr int kMaxTableWidth = 2048, kMaxTableHeight = 1024;
 
 }  // namespace
 
-Environment::Environment(const Scene& scene) : scene_(scene) {
-  const World& world = scene.world;
-  const float* m = world.matrix;
+Environment::Environment(const Scene& scene, const World& world) : scene_(scene), world_(world) {
+  // a mirror ball's axis is y: turned to z
+  for (int i = 0; i < 9; ++i) matrix_[i] = world.matrix[world.map == SkyMap::kMirrorBall ? (i + 6) % 9 : i];
+  const float* m = matrix_;
   // inverse by cofactors; the reader has seen to it that the matrix is not singular
   const float c[9] = {m[4] * m[8] - m[5] * m[7], m[2] * m[7] - m[1] * m[8], m[1] * m[5] - m[2] * m[4],
                       m[5] * m[6] - m[3] * m[8], m[0] * m[8] - m[2] * m[6], m[2] * m[3] - m[0] * m[5],
@@ -34,7 +46,7 @@ Environment::Environment(const Scene& scene) : scene_(scene) {
   determinant_ = std::abs(det);
 
   exists_ = !isBlack(world.radiance);
-  if (!exists_) return;
+  if (!exists_ || (world.visibility & kSeenBySurfaces) == 0) return;
   if (world.texture < 0) {
     integral_ = 4 * kPi<float> * strength(world.radiance);
     return;
@@ -43,8 +55,18 @@ Environment::Environment(const Scene& scene) : scene_(scene) {
   // The table's cells hold the image's luminance, taken over each cell from a grid of looked-up values, so that the
   // density is positive wherever the interpolated image is.
   const Image& image = scene.images[static_cast<size_t>(scene.textures[static_cast<size_t>(world.texture)].image)];
-  width_ = std::min(image.width, kMaxTableWidth), height_ = std::min(image.height, kMaxTableHeight);
-  const int subX = (image.width + width_ - 1) / width_ * 2, subY = (image.height + height_ - 1) / height_ * 2;
+  const bool ball = world.map == SkyMap::kMirrorBall;
+  // of a ball: the rim, and a meridian at the middle, where it is the finest
+  const int side = std::max(image.width, image.height);
+  const int columns = ball ? static_cast<int>(std::ceil(kPi<double> * side)) : image.width;
+  const int rows = ball ? static_cast<int>(std::ceil(kPi<double> / 4 * side)) : image.height;
+  width_ = std::min(columns, kMaxTableWidth), height_ = std::min(rows, kMaxTableHeight);
+  const int subX = (columns + width_ - 1) / width_ * 2, subY = (rows + height_ - 1) / height_ * 2;
+  const auto uvOf = [&](float u, float v) -> Vec2f {
+    if (!ball) return {u, v};
+    const float phi = kPi<float> * (1 - 2 * u), radius = 0.5f * std::sin(0.5f * kPi<float> * v);
+    return {0.5f + radius * std::sin(phi), 0.5f + radius * std::cos(phi)};
+  };
   for (int y = 0; y < height_; ++y) {
     const bool up = 2 * y >= height_;
     const double step = kPi<double> / height_, from = step * (up ? height_ - 1 - y : y);
@@ -65,7 +87,7 @@ Environment::Environment(const Scene& scene) : scene_(scene) {
               (static_cast<float>(x) + (static_cast<float>(i)) / static_cast<float>(subX)) / static_cast<float>(width_);
           const float v = (static_cast<float>(y) + (static_cast<float>(j)) / static_cast<float>(subY)) /
                           static_cast<float>(height_);
-          sum += strength(sampleRgb(scene, use, {u, v}) * world.radiance);
+          sum += strength(sampleRgb(scene, use, uvOf(u, v)) * world.radiance);
         }
       const float stretched = stretch(toImage(fromImage(inCell(x, static_cast<size_t>(y), 0.5f, 0.5f))));
       weights[static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x)] =
@@ -79,7 +101,7 @@ Environment::Environment(const Scene& scene) : scene_(scene) {
 
 Vec3f Environment::toImage(Vec3f d) const {
   const Vec3f z = scene_.zUp ? Vec3f{d.x, -d.z, d.y} : d;
-  const float* m = scene_.world.matrix;
+  const float* m = matrix_;
   return {m[0] * z.x + m[1] * z.y + m[2] * z.z, m[3] * z.x + m[4] * z.y + m[5] * z.z,
           m[6] * z.x + m[7] * z.y + m[8] * z.z};
 }
@@ -92,10 +114,12 @@ Vec3f Environment::fromImage(Vec3f d) const {
 }
 
 Rgb Environment::radiance(Vec3f direction) const {
-  if (scene_.world.texture < 0) return scene_.world.radiance;
+  if (world_.texture < 0) return world_.radiance;
   TextureUse use;
-  use.texture = scene_.world.texture;
-  return scene_.world.radiance * sampleRgb(scene_, use, toUv(toImage(direction)));
+  use.texture = world_.texture;
+  const Vec3f image = toImage(direction);
+  const Vec2f uv = world_.map == SkyMap::kMirrorBall ? mirrorBall(image) : equirectangular(image);
+  return world_.radiance * sampleRgb(scene_, use, uv);
 }
 
 // Of the image's frame, uniform in the cell's solid angle: in azimuth and in cos of the polar angle.
@@ -116,11 +140,18 @@ Vec3f Environment::sample(ChoicePoint u) const {
 float Environment::pdf(Vec3f direction) const {
   if (table_.empty()) return 0;
   const Vec3f image = toImage(direction);
-  const Vec2f uv = toUv(image);
+  const Vec2f uv = equirectangular(image);
   const int x = std::clamp(static_cast<int>(uv.x * static_cast<float>(width_)), 0, width_ - 1);
   const int y = std::clamp(static_cast<int>(uv.y * static_cast<float>(height_)), 0, height_ - 1);
   const float solidAngle = bands_[static_cast<size_t>(y)].height * 2 * kPi<float> / static_cast<float>(width_);
   return table_.probability(static_cast<uint32_t>(y * width_ + x)) / solidAngle * stretch(image);
+}
+
+std::vector<Environment> environmentsOf(const Scene& scene) {
+  std::vector<Environment> out;
+  out.reserve(scene.worlds.size());
+  for (const World& world : scene.worlds) out.emplace_back(scene, world);
+  return out;
 }
 
 }  // namespace wardmis

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Light from infinitely far in all directions: a constant, or an equirectangular image with importance sampling.
+// Light from infinitely far in all directions: a constant, or an image with importance sampling.
 #pragma once
 
 #include "math/random.h"
@@ -11,10 +11,12 @@ namespace wardmis {
 
 class Environment {
  public:
-  explicit Environment(const Scene& scene);
+  Environment(const Scene& scene, const World& world);
 
   bool exists() const { return exists_; }
-  // Worth sampling by itself. A constant sky is not: the techniques of the surface cover it evenly.
+  const World& world() const { return world_; }
+  // Worth sampling by itself. A constant sky is not: the techniques of the surface cover it evenly; nor is one that no
+  // surface sees.
   bool sampled() const { return !table_.empty(); }
   // Mean radiance over the sphere times 4 pi, by luminance.
   float integral() const { return integral_; }
@@ -25,7 +27,7 @@ class Environment {
   float pdf(Vec3f direction) const;
 
  private:
-  // World -> the image's Z-up frame, not normalised: the world's matrix may be any that has an inverse.
+  // World -> the frame of the table, not normalised: the world's matrix may be any that has an inverse.
   Vec3f toImage(Vec3f world) const;
   Vec3f fromImage(Vec3f image) const;  // unit -> unit
   Vec3f inCell(int x, size_t y, float u, float v) const;
@@ -34,18 +36,25 @@ class Environment {
   float stretch(Vec3f image) const { return determinant_ / (dot(image, image) * length(image)); }
 
   const Scene& scene_;
+  const World& world_;
   bool exists_ = false;
   float integral_ = 0;
-  float inverse_[9] = {}, determinant_ = 1;  // of the world's matrix; the determinant without its sign
-  int width_ = 0, height_ = 0;               // of the table, row 0 at v = 0 (down)
+  // The table's cells lie between meridians and parallels about this frame's z axis. It is that of an equirectangular
+  // image; in a mirror ball's, z is the axis of the ball, towards which all of the image's rim looks, so that its
+  // meridians are straight and its parallels circles about the middle.
+  float matrix_[9] = {}, inverse_[9] = {}, determinant_ = 1;  // the determinant without its sign
+  int width_ = 0, height_ = 0;                                // of the table, row 0 at the bottom (-z)
   AliasTable table_;
   // A row of the table lies between two polar angles; each is measured from the pole that is nearer to the row, by
   // 1 - cos, which is exact where cos alone is not.
   struct Band {
     float begin, height;  // of 1 - cos: at the border towards that pole, and between the borders
-    bool up;              // the pole is v = 1
+    bool up;              // the pole is +z
   };
   std::vector<Band> bands_;
 };
+
+// One for each of the scene's worlds, which must stay where they are.
+std::vector<Environment> environmentsOf(const Scene& scene);
 
 }  // namespace wardmis

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "math/error.h"
 #include "math/memory.h"
 
@@ -29,13 +31,14 @@ uint32_t needs(const Camera& c) { return c.lensRadius > 0 ? kNeedsLens : 0u; }
 uint32_t needs(const World& w) { return !isBlack(w.radiance) ? kNeedsEnvironment : 0u; }
 
 uint32_t needs(const Scene& scene, const Geometry& geometry, const Emitters& emitters, bool joint) {
-  uint32_t n = needs(scene.world);
+  uint32_t n = 0;
+  for (const World& w : scene.worlds) n |= needs(w);
   if (scene.camera) n |= needs(*scene.camera);
   for (const Shape& s : geometry.shapes) n |= needs(scene.materials[static_cast<size_t>(s.material)]);
   if (emitters.any()) n |= kNeedsLightSampling;
   constexpr uint32_t kBoth = kNeedsDiffuse | kNeedsSpecular;
   if (emitters.anyShared() && (n & kBoth) != 0) n |= kNeedsAllocation;
-  if (joint && (n & kNeedsEnvironment) != 0 && (n & kBoth) == kBoth) n |= kNeedsAllocation;
+  if (joint && emitters.anySky() && (n & kBoth) == kBoth) n |= kNeedsAllocation;
   return n;
 }
 
@@ -53,7 +56,7 @@ std::vector<std::string> leftOut(const Scene& scene, uint32_t n, const Emitters&
   add(kNeedsBounces, "direct light only: no paths, no Russian roulette");
   if ((n & kNeedsEnvironment) == 0)
     out.emplace_back("no environment: none sampled");
-  else if (scene.world.texture < 0)
+  else if (std::ranges::all_of(scene.worlds, [](const World& w) { return w.texture < 0; }))
     out.emplace_back("constant environment: not aimed at, the surface's own techniques cover it evenly");
   if ((n & kNeedsLightSampling) == 0)
     out.emplace_back("no lights to aim at: no light samples, nothing to allocate, no pilot");

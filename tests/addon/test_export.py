@@ -385,7 +385,7 @@ class Filters(SceneTest):
 
     def seen(self):
         scene = self.gather()
-        return len(scene.instances), len(scene.lights), any(scene.world.radiance)
+        return len(scene.instances), len(scene.lights), bool(scene.worlds)
 
     def test_environment_and_surfaces(self):
         layer = self.scene.view_layers[0]

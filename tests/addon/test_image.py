@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 from wardmis.export.context import ExportContext
 from wardmis.export.image import Picture, export_image, frame_of, path_of_frame, picture_of
-from wardmis.export.world import export_world
+from wardmis.export.world import export_worlds
 
 LINEAR = "Linear" if bpy.app.version < (4, 0, 0) else "Linear Rec.709"
 
@@ -208,5 +208,5 @@ class World(unittest.TestCase):
         self.addCleanup(lambda: bpy.data.images.remove(bpy.data.images["Sky"]))
         node.image.source, node.image.filepath = "FILE", "/nowhere/sky.exr"
         context = ExportContext(export_image)
-        self.assertEqual(export_world(world, context).radiance, (0.5, 0.5, 0.5))
+        self.assertEqual([sky.radiance for sky in export_worlds(world, context)], [(0.5, 0.5, 0.5)])
         self.assertIn("/nowhere/sky.exr", context.notes[0])

@@ -13,6 +13,7 @@ from support import SceneTest
 from wardmis import compat
 from wardmis.export import ExportError
 from wardmis.export.camera import full_resolution, view_plane
+from wardmis.export.value import solid_angles_of
 
 NEW = compat.LIGHTS_OF_4_0
 
@@ -315,40 +316,47 @@ class World(SceneTest):
         self.background.inputs["Color"].default_value = (0.1, 0.2, 0.4, 1)
         self.background.inputs["Strength"].default_value = 2
 
+    def only(self, scene):
+        """The sky of a scene that has one for all rays."""
+        (world,) = scene.worlds
+        self.assertEqual(world.hidden_from, frozenset())
+        return world
+
     def test_no_world_is_black(self):
         self.scene.world = None
-        self.assertEqual(self.gather().world.radiance, (0, 0, 0))
+        self.assertEqual(self.gather().worlds, [])
 
     def test_background(self):
-        np.testing.assert_allclose(self.gather().world.radiance, (0.2, 0.4, 0.8))
+        np.testing.assert_allclose(self.only(self.gather()).radiance, (0.2, 0.4, 0.8))
 
     def test_background_that_is_not_finite(self):
         self.background.inputs["Strength"].default_value = math.nan
         scene = self.gather()
-        self.assertEqual(scene.world.radiance, (0, 0, 0))
+        self.assertEqual(scene.worlds, [])
         self.assertIn(
             "world 'World': node 'Background' (Background) has a 'Strength' that is not a finite number", scene.notes[0]
         )
 
-    def test_limit_of_an_image_is_noted(self):
+    def test_limit_of_an_image(self):
         self.world.cycles.max_bounces = 2
-        self.assertEqual(self.gather().notes, [])
+        self.assertEqual(self.only(self.gather()).max_bounces, 1024)  # one colour has none, as in Cycles
         node = self.world.node_tree.nodes.new("ShaderNodeTexEnvironment")
         node.image = bpy.data.images.new("Sky", 4, 2)
         self.world.node_tree.links.new(node.outputs[0], self.background.inputs["Color"])
-        self.assertIn("world 'World': its Max Bounces are not supported", self.gather().notes[0])
+        scene = self.gather()
+        self.assertEqual((self.only(scene).max_bounces, scene.notes), (2, []))
 
     def test_negative_background_takes_light_away(self):
         self.background.inputs["Strength"].default_value = -1
         scene = self.gather()
-        np.testing.assert_allclose(scene.world.radiance, (-0.1, -0.2, -0.4))
+        np.testing.assert_allclose(self.only(scene).radiance, (-0.1, -0.2, -0.4))
         self.assertEqual(scene.notes, [])
 
     def test_color_without_nodes(self):
         if compat.VERSION >= (5, 0, 0):
             self.skipTest("this Blender's worlds always have nodes")
         self.world.use_nodes, self.world.color = False, (0.3, 0.2, 0.1)
-        np.testing.assert_allclose(self.gather().world.radiance, (0.3, 0.2, 0.1))
+        np.testing.assert_allclose(self.only(self.gather()).radiance, (0.3, 0.2, 0.1))
 
     def environment(self, mapping_type: str | None, rotation=(0, 0, 0), scale=(1, 1, 1)):
         node = self.tree.nodes.new("ShaderNodeTexEnvironment")
@@ -365,9 +373,9 @@ class World(SceneTest):
     def test_environment_texture(self):
         self.environment(None)
         scene = self.gather()
-        self.assertEqual(scene.world.radiance, (2, 2, 2))
-        self.assertEqual(scene.images[scene.textures[scene.world.texture].image].name, "Sky")
-        np.testing.assert_array_equal(scene.world.matrix, np.eye(3))
+        self.assertEqual(self.only(scene).radiance, (2, 2, 2))
+        self.assertEqual(scene.images[scene.textures[self.only(scene).texture].image].name, "Sky")
+        np.testing.assert_array_equal(self.only(scene).matrix, np.eye(3))
         self.assertEqual(scene.notes, [])
 
     def test_mapping_turns_the_environment(self):
@@ -381,44 +389,81 @@ class World(SceneTest):
             with self.subTest(kind):
                 self.environment(kind, quarter)
                 scene = self.gather()
-                np.testing.assert_allclose(scene.world.matrix @ (1, 0, 0), turned, atol=1e-6)
+                np.testing.assert_allclose(self.only(scene).matrix @ (1, 0, 0), turned, atol=1e-6)
                 self.assertEqual(scene.notes, [])
 
     def test_mapping_mirrors_the_environment(self):
         self.environment("POINT", scale=(-1, 1, 1))
-        np.testing.assert_allclose(self.gather().world.matrix, np.diag((-1, 1, 1)), atol=1e-6)
+        np.testing.assert_allclose(self.only(self.gather()).matrix, np.diag((-1, 1, 1)), atol=1e-6)
 
     def test_mapping_stretches_the_environment(self):
         for kind, stretched in (("POINT", (2, 1, -4)), ("TEXTURE", (0.5, 1, -0.25)), ("NORMAL", (0.5, 1, -0.25))):
             with self.subTest(kind):
                 self.environment(kind, scale=(2, 1, -4))
                 scene = self.gather()
-                np.testing.assert_allclose(scene.world.matrix, np.diag(stretched), atol=1e-6)
+                np.testing.assert_allclose(self.only(scene).matrix, np.diag(stretched), atol=1e-6)
                 self.assertEqual(scene.notes, [])
 
     def test_what_is_not_understood_is_noted(self):
-        self.environment("POINT", scale=(1, 0, 1)).projection = "MIRROR_BALL"
+        self.environment("POINT", scale=(1, 0, 1))
         notes = "\n".join(self.gather().notes)
-        self.assertIn("has the projection Mirror_Ball, which is not supported", notes)
         self.assertIn("node 'Mapping' (Mapping) flattens the sky; its scale is left out", notes)
 
-    def test_volume_and_ray_visibility_are_noted(self):
+    def test_mirror_ball(self):
+        self.environment("POINT", scale=(1, 2, 1)).projection = "MIRROR_BALL"
+        scene = self.gather()
+        self.assertEqual((self.only(scene).projection, scene.notes), ("mirror-ball", []))
+        weights = solid_angles_of("mirror-ball", 100, 200)
+        self.assertAlmostEqual(weights.mean(), math.pi / 4, 2)
+        self.assertEqual((weights[0], weights[50 * 200 + 100]), (0, 1))
+
+    def test_volume_is_noted(self):
         volume = self.tree.nodes.new("ShaderNodeVolumeScatter")
         self.tree.links.new(volume.outputs[0], self.tree.get_output_node("ALL").inputs["Volume"])
-        self.world.cycles_visibility.camera = False
-        notes = "\n".join(self.gather().notes)
-        self.assertIn("world 'World': volumes are not supported", notes)
-        self.assertIn("world 'World': its ray visibility is not supported", notes)
+        self.assertIn("world 'World': volumes are not supported", "\n".join(self.gather().notes))
+
+    def test_ray_visibility(self):
+        self.world.cycles_visibility.camera = self.world.cycles_visibility.glossy = False
+        (world,) = self.gather().worlds
+        self.assertEqual(world.hidden_from, {"camera", "glossy"})
+        self.world.cycles_visibility.diffuse = False
+        self.world.update_tag()
+        self.assertEqual(self.gather().worlds, [])
+
+    def test_light_path_makes_skies_for_kinds_of_ray(self):
+        """Those that see the same share one; what is known of the ray's kind is nothing to note."""
+        seen = {
+            "Is Camera Ray": [(2, {"camera"}), (1, {"diffuse", "glossy"})],
+            "Is Diffuse Ray": [(1, {"camera", "glossy"}), (2, {"diffuse"})],
+            "Is Glossy Ray": [(1, {"camera", "diffuse"}), (2, {"glossy"})],
+            "Is Reflection Ray": [(1, {"camera"}), (2, {"diffuse", "glossy"})],
+            "Is Shadow Ray": [(1, {"camera", "diffuse", "glossy"})],
+        }
+        path, add = self.tree.nodes.new("ShaderNodeLightPath"), self.tree.nodes.new("ShaderNodeMath")
+        add.inputs[1].default_value = 1
+        self.tree.links.new(add.outputs[0], self.background.inputs["Strength"])
+        self.background.inputs["Color"].default_value = (1, 1, 1, 1)
+        self.world.cycles.max_bounces = 3
+        for output, expected in seen.items():
+            with self.subTest(output):
+                self.tree.links.new(path.outputs[output], add.inputs[0])
+                scene = self.gather()
+                kinds = {"camera", "diffuse", "glossy"}
+                self.assertEqual([(w.radiance[0], kinds - w.hidden_from) for w in scene.worlds], expected)
+                self.assertEqual(scene.notes, [])
+                self.assertEqual({w.max_bounces for w in scene.worlds}, {3 if len(expected) > 1 else 1024})
+        self.tree.links.new(path.outputs["Ray Length"], add.inputs[0])
+        self.assertIn("0 as its Ray Length is used instead", self.gather().notes[0])
 
     def test_missing_image_is_grey_and_a_sky_its_mean(self):
         self.environment(None).image = None
         scene = self.gather()
-        self.assertEqual(scene.world.radiance, (1, 1, 1))
+        self.assertEqual(self.only(scene).radiance, (1, 1, 1))
         self.assertIn("world 'World': node 'Environment Texture' (Environment Texture) has no image", scene.notes[0])
         sky = self.tree.nodes.new("ShaderNodeTexSky")
         self.tree.links.new(sky.outputs["Color"], self.background.inputs["Color"])
         scene = self.gather()
-        self.assertTrue(all(scene.world.radiance))
+        self.assertTrue(all(self.only(scene).radiance))
         self.assertIn("node 'Sky Texture'", scene.notes[0])
 
     def test_worlds_of_other_nodes(self):
@@ -450,10 +495,11 @@ class World(SceneTest):
             with self.subTest(node.bl_idname):
                 self.tree.links.new(node.outputs[0], output)
                 scene = self.gather()
-                np.testing.assert_allclose(scene.world.radiance, expected, rtol=1e-6)
+                radiance = self.only(scene).radiance if scene.worlds else (0, 0, 0)
+                np.testing.assert_allclose(radiance, expected, rtol=1e-6)
                 self.assertEqual(scene.notes, [])
         grouped.mute = True
-        self.assertEqual(self.gather().world.radiance, (0, 0, 0))
+        self.assertEqual(self.gather().worlds, [])
 
     def test_sky_behind_nodes_is_baked(self):
         texture = self.environment(None)
@@ -463,6 +509,6 @@ class World(SceneTest):
         self.tree.links.new(texture.outputs["Color"], gamma.inputs["Color"])
         self.tree.links.new(gamma.outputs["Color"], self.background.inputs["Color"])
         scene = self.gather()
-        self.assertEqual(scene.world.radiance, (2, 2, 2))
-        np.testing.assert_allclose(scene.images[scene.textures[scene.world.texture].image].pixels, 0.25, rtol=1e-6)
+        self.assertEqual(self.only(scene).radiance, (2, 2, 2))
+        np.testing.assert_allclose(scene.images[scene.textures[self.only(scene).texture].image].pixels, 0.25, rtol=1e-6)
         self.assertEqual(scene.notes, [])

@@ -76,7 +76,7 @@ class Files(unittest.TestCase):
         teapot = next(mesh for mesh in scene.meshes if mesh.name == "Teapot")
         self.assertIsNotNone(teapot.normals)
         self.assertGreater(sum(len(primitive.triangles) for primitive in teapot.primitives), 30000)
-        self.assertEqual(scene.images[scene.textures[scene.world.texture].image].mime_type, "image/x-exr")
+        self.assertEqual(scene.images[scene.textures[scene.worlds[0].texture].image].mime_type, "image/x-exr")
         self.assertEqual(scene.lights, [])
 
     def test_sky_of_the_teapot_is_the_cosine(self):
@@ -119,11 +119,11 @@ class Files(unittest.TestCase):
             mirrored = 2 * (to_eye @ normal) * normal - to_eye
             to_light = -center / np.linalg.norm(center)  # the lights are on the x axis
             self.assertGreater(mirrored @ to_light, 0.999)
-        self.assertEqual(scene.world.radiance, (0, 0, 0))
+        self.assertEqual(scene.worlds, [])
 
     def test_spheres_of_the_furnace_see_the_sky_alone(self):
         scene = self.open("furnace")
-        self.assertEqual((scene.world.radiance, scene.world.texture), ((1, 1, 1), None))
+        self.assertEqual([(w.radiance, w.texture) for w in scene.worlds], [((1, 1, 1), None)])
         self.assertEqual({i.hidden_from for i in scene.instances}, {frozenset({"diffuse", "glossy", "shadow"})})
         half, ward = self.material(scene, "Half"), self.material(scene, "Ward")
         self.assertEqual((half.diffuse.value, half.specular.value), ((0.5, 0.5, 0.5), (0, 0, 0)))

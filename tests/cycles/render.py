@@ -61,7 +61,8 @@ def make(entry: Scene) -> None:
     for (
         world
     ) in bpy.data.worlds:  # Cycles draws its map of an image sky as large as 2048 pixels, at a second for each render
-        world.cycles.sampling_method, world.cycles.sample_map_resolution = "MANUAL", 256
+        if world.cycles.sampling_method == "AUTOMATIC":
+            world.cycles.sampling_method, world.cycles.sample_map_resolution = "MANUAL", 256
     for made in bpy.data.objects:  # Cycles moves the rays of shadows away from smooth surfaces
         owner = compat.shadow_terminator_owner(made)
         assign(owner, shadow_terminator_geometry_offset=0.0, shadow_terminator_offset=0.0)

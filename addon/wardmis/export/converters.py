@@ -179,6 +179,21 @@ def _light_falloff(use: NodeUse, output: Any) -> Value | None:
     return read(use, "Strength") if output.name == "Quadratic" else None
 
 
+def _light_path(use: NodeUse, output: Any) -> Value | None:
+    """Of a world, what is known of the kind of ray that sees it."""
+    ray = use.owner.ray
+    known = {
+        "Is Camera Ray": ray == "camera",
+        "Is Diffuse Ray": ray == "diffuse",
+        "Is Glossy Ray": ray == "glossy",
+        "Is Reflection Ray": ray != "camera",
+        "Is Shadow Ray": False,
+        "Is Transmission Ray": False,
+        "Is Volume Scatter Ray": False,
+    }
+    return None if ray is None or output.name not in known else constant(float(known[output.name]))
+
+
 def _invert(share: np.ndarray, color: np.ndarray) -> np.ndarray:
     return color + share * (1.0 - 2.0 * color)
 
@@ -216,6 +231,7 @@ CONVERTERS.update(
         "ShaderNodeCombineHSV": _combine,
         "ShaderNodeCombineXYZ": _combine,
         "ShaderNodeLightFalloff": _light_falloff,
+        "ShaderNodeLightPath": _light_path,
         "ShaderNodeBlackbody": _spectral(blackbody),
         "ShaderNodeWavelength": _spectral(wavelength),
     }

@@ -26,6 +26,7 @@ from .model import (
     ScalarInput,
     SceneData,
     TextureUse,
+    WorldData,
 )
 from .target import writing
 
@@ -306,7 +307,7 @@ class _Encoder:
         return self._node(node, {"light": index, **_visibility(light.hidden_from)})
 
     def _scene_extension(self, scene: SceneData, camera: int) -> dict[str, Any]:
-        film, world = scene.film, scene.world
+        film = scene.film
         result: dict[str, Any] = {
             "version": 1,
             "generator": scene.generator,
@@ -321,10 +322,9 @@ class _Encoder:
             },
             "notes": scene.notes,
         }
-        if any(world.radiance):
-            result["world"] = {"radiance": list(world.radiance)}
-            if world.texture is not None:
-                result["world"]["texture"] = {"index": world.texture, "matrix": world.matrix.reshape(-1).tolist()}
+        worlds = [_world(world) for world in scene.worlds if any(world.radiance)]
+        if worlds:
+            result["world"] = worlds[0] if len(worlds) == 1 else worlds
         if scene.lights:
             result["lights"] = [_light(light) for light in scene.lights]
         return result
@@ -379,6 +379,17 @@ def _input(value: ColorInput | ScalarInput) -> dict[str, Any]:
     result: dict[str, Any] = {"value": value.value if isinstance(value, ScalarInput) else list(value.value)}
     if value.texture is not None:
         result["texture"] = _texture_use(value.texture, scalar)
+    return result
+
+
+def _world(world: WorldData) -> dict[str, Any]:
+    result: dict[str, Any] = {"radiance": list(world.radiance), **_visibility(world.hidden_from)}
+    if world.max_bounces != WorldData.max_bounces:
+        result["maxBounces"] = world.max_bounces
+    if world.texture is not None:
+        result["texture"] = {"index": world.texture, "matrix": world.matrix.reshape(-1).tolist()}
+        if world.projection != WorldData.projection:
+            result["texture"]["projection"] = world.projection
     return result
 
 

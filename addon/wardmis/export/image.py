@@ -79,10 +79,15 @@ class Picture:
     @property
     def mime_type(self) -> str:
         """Of the file that the image was read from, if it is still what the file holds and the renderer reads such files."""
-        if self.image.is_dirty or self.image.source not in {"FILE", "TILED", "SEQUENCE"}:
+        if self.image.is_dirty or self.image.source not in {"FILE", "TILED", "SEQUENCE"} or self._is_blenders:
             return ""
         head = self._file(16)
         return next((mime_type for signature, mime_type in SIGNATURES if head.startswith(signature)), "")
+
+    @property
+    def _is_blenders(self) -> bool:
+        """Whether Cycles gets Blender's pixels, which loading has made linear and multiplied by alpha, not those of the file."""
+        return bool(self.image.packed_files) and self.image.is_float and self.image.alpha_mode == "STRAIGHT"
 
     @property
     def is_grey_with_alpha(self) -> bool:
@@ -179,6 +184,12 @@ class Picture:
         except OSError:
             return b""
 
+    @property
+    def _is_multiplied_on_loading(self) -> bool:
+        """Whether Blender holds the colours of a float image multiplied by alpha, which its file does not."""
+        straight = self.image.alpha_mode == "STRAIGHT"
+        return self.mime_type == "image/png" or (self.mime_type == "image/x-exr" and straight)
+
     def _stored(self, alpha: str) -> np.ndarray:
         """(height, width, channels) uint8, or float32 where the image is one or alpha divides: sRGB if `is_encoded`, else linear.
 
@@ -191,7 +202,7 @@ class Picture:
         pixels = pixels.reshape(height, width, image.channels)
         if not image.is_float:
             pixels = np.rint(pixels * 255.0).astype(np.uint8)
-        elif self.mime_type == "image/png" and image.channels == 4:  # Blender multiplies them by alpha on loading
+        elif image.channels == 4 and self._is_multiplied_on_loading:
             pixels = np.concatenate([_over_alpha(pixels), pixels[..., 3:]], axis=-1)
         if image.is_float and self.is_encoded:
             pixels = np.concatenate([encode_srgb(pixels[..., :3]), pixels[..., 3:]], axis=-1)
@@ -216,11 +227,11 @@ def picture_of(image: Any, shows_alpha: bool, user: Any, scene_frame: int) -> Pi
     space = image.colorspace_settings.name
     if image.alpha_mode in {"STRAIGHT", "PREMUL"} and space not in DATA:
         integers = not image.is_float or Picture(image).mime_type == "image/png"
-        is_done = (
-            not integers
-            or Picture(image).is_grey_with_alpha
-            or (image.alpha_mode == "PREMUL" and compat.PREMULTIPLIED_FILES_ARE_TRUSTED)
-        )
+        premultiplied = image.alpha_mode == "PREMUL"
+        if integers:
+            is_done = Picture(image).is_grey_with_alpha or (premultiplied and compat.ALPHA_MODES_ARE_TRUSTED)
+        else:
+            is_done = premultiplied or not compat.ALPHA_MODES_ARE_TRUSTED
         alpha = ("divided" if shows_alpha else "kept") if is_done else ("restored" if shows_alpha else "multiplied")
     return Picture(image, alpha, frame_of(user, scene_frame) if image.source == "SEQUENCE" else None)
 

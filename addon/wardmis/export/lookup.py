@@ -19,7 +19,7 @@ class Lookup:
     """Which texel: two values with equal look-ups see the same one.
 
     `transform`: of six numbers, the affine map from the mesh's UVs to the picture's; of nine, the matrix from a direction of the
-    world to the one that is looked up in an equirectangular picture. `warp`: before that, in the unit square, two 3x4 matrices: the
+    world to the one that is looked up in a picture of all directions, of the `projection` "equirectangular" or "mirror-ball". `warp`: before that, in the unit square, two 3x4 matrices: the
     UVs as (u, v, 0, 1) times the first are a vector that is made a unit one, and it times the second gives the picture's UVs.
     """
 
@@ -28,6 +28,7 @@ class Lookup:
     extension: str
     transform: tuple[float, ...]
     warp: tuple[float, ...] = ()
+    projection: str = "equirectangular"
 
     @property
     def is_sky(self) -> bool:
@@ -44,7 +45,8 @@ class Lookup:
 
     def goes_with(self, other: Lookup) -> bool:
         """Whether one image can show both."""
-        return (self.transform, self.extension) == (other.transform, other.extension)
+        mine, others = ((x.transform, x.extension, x.projection) for x in (self, other))
+        return mine == others
 
     def seen(self, width: int, height: int) -> np.ndarray:
         """(height, width, 4) float32: linear RGBA over the unit square; one texel where there is nothing to look up."""

@@ -176,9 +176,14 @@ class FilmData:
 
 @dataclass
 class WorldData:
+    """A sky; several lie over each other, as a rule for other kinds of ray each."""
+
     radiance: Rgb = (0.0, 0.0, 0.0)
     texture: int | None = None  # index into SceneData.textures
     matrix: np.ndarray = field(default_factory=lambda: np.eye(3))
+    projection: str = "equirectangular"  # or "mirror-ball"
+    hidden_from: frozenset[str] = frozenset()
+    max_bounces: int = 1024  # as of a light
 
 
 @dataclass
@@ -186,7 +191,7 @@ class SceneData:
     generator: str
     film: FilmData
     camera: CameraData
-    world: WorldData = field(default_factory=WorldData)
+    worlds: list[WorldData] = field(default_factory=list)
     images: list[ImageData] = field(default_factory=list)
     textures: list[TextureData] = field(default_factory=list)
     materials: list[MaterialData] = field(default_factory=list)

@@ -100,7 +100,7 @@ def _reflectance(ior: float) -> float:
 
 
 def _light_path(use: NodeUse, output: Any) -> Neutral:
-    """What the camera sees of a surface, and what surfaces see of a light or a world."""
+    """What the camera sees of a surface, and what surfaces see of a light; of a world, what is not known of its ray."""
     value = 1.0 if output.name == "Is Camera Ray" and use.owner.kind == "material" else 0.0
     return constant(value), f"{value:g} as its {output.name}"
 

@@ -15,8 +15,8 @@ from .image import export_image
 from .light import export_light
 from .material import export_material
 from .mesh import Geometry, assemble, gather_geometry, transformed
-from .model import VISIBILITY, ColorInput, InstanceData, MaterialData, ScalarInput, SceneData, WorldData
-from .world import export_world
+from .model import VISIBILITY, ColorInput, InstanceData, MaterialData, ScalarInput, SceneData
+from .world import export_worlds
 
 NO_MATERIAL = MaterialData("(no material)", diffuse=ColorInput((0.8, 0.8, 0.8)))  # as Cycles shows it
 if compat.NO_MATERIAL_IS_PRINCIPLED:  # of roughness 0.5 and IOR 1.5
@@ -54,12 +54,12 @@ def gather_scene(
     gatherer.gather_objects(depsgraph)
     context.owner = ""
     layer = depsgraph.view_layer_eval
-    world = export_world(compat.world_of(layer, scene), context) if layer.use_sky else WorldData()
+    worlds = export_worlds(compat.world_of(layer, scene), context) if layer.use_sky else []
     return SceneData(
         generator,
         film,
         camera_data,
-        world,
+        worlds,
         context.images,
         context.textures,
         gatherer.materials,

@@ -34,12 +34,10 @@ def environment_texture(use: NodeUse, output: Any) -> Value:
     picture = _picture(use)
     if picture is None:
         return _missing(use)
-    if node.projection != "EQUIRECTANGULAR":
-        use.note(
-            f"has the projection {node.projection.title()}, which is not supported; the image is read as equirectangular"
-        )
     turn = _directions(use) if use.owner.kind == "world" else np.eye(3)
-    value = _shown(Lookup(picture, node.interpolation, "REPEAT", tuple(turn.reshape(-1).tolist())), output)
+    projection = "mirror-ball" if node.projection == "MIRROR_BALL" else "equirectangular"
+    transform = tuple(turn.reshape(-1).tolist())
+    value = _shown(Lookup(picture, node.interpolation, "REPEAT", transform, projection=projection), output)
     if use.owner.kind == "world":
         return value
     use.note(f"is looked up by direction, which a {use.owner.kind} cannot; its mean is used everywhere")

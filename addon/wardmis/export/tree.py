@@ -10,16 +10,21 @@ from typing import Any
 from .. import compat
 from .context import ExportContext
 
+RAYS = ("camera", "diffuse", "glossy")  # kinds of ray that may see different skies
 LONGEST_CHAIN = 10_000  # of reroutes, muted nodes and borders of groups; a longer one is a circle
 
 
 @dataclass(frozen=True)
 class Owner:
-    """Whose nodes they are: the `kind` is material, world or light; `place` begins every note about them."""
+    """Whose nodes they are: the `kind` is material, world or light; `place` begins every note about them.
+
+    `ray`: the kind of ray, of RAYS, for which a world's are evaluated.
+    """
 
     kind: str
     place: str
     context: ExportContext
+    ray: str | None = None
 
 
 @dataclass(frozen=True)

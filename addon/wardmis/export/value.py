@@ -64,10 +64,9 @@ class Value:
         """Over the picture; of a sky over all directions."""
         if self.lookup is None:
             return self
-        rows = self.seen().mean(axis=1, dtype=float)
-        angles = np.linspace(0.0, np.pi, len(rows) + 1)
-        solid_angles = np.cos(angles[:-1]) - np.cos(angles[1:]) if self.lookup.is_sky else None
-        return Value(np.average(rows, axis=0, weights=solid_angles))
+        seen = self.seen()
+        solid_angles = solid_angles_of(self.lookup.projection, *seen.shape[:2]) if self.lookup.is_sky else None
+        return Value(np.average(seen.reshape(-1, 3).astype(float), axis=0, weights=solid_angles))
 
     @property
     def is_black(self) -> bool:
@@ -86,6 +85,15 @@ def constant(value: Any) -> Value:
 
 
 BLACK = constant(0.0)
+
+
+def solid_angles_of(projection: str, height: int, width: int) -> np.ndarray:
+    """Of the pixels of a picture of all directions, row by row, in any unit."""
+    if projection == "mirror-ball":  # the same for all that lie in the disk
+        y, x = np.mgrid[0:height, 0:width] + 0.5
+        return np.float64(np.hypot(2.0 * x / width - 1.0, 2.0 * y / height - 1.0) <= 1.0).reshape(-1)
+    parallels = np.cos(np.linspace(0.0, np.pi, height + 1))
+    return np.repeat(parallels[:-1] - parallels[1:], width)
 
 
 @dataclass(frozen=True)

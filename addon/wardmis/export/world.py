@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's world -> a constant radiance, or an equirectangular image times a factor."""
+"""Blender's world -> skies for kinds of ray: constant radiances, or images of all directions times a factor."""
 
 from __future__ import annotations
 
@@ -11,34 +11,53 @@ from .. import compat
 from .context import ExportContext
 from .model import WorldData, not_finite
 from .shader import shader
-from .tree import Owner, output_use
+from .tree import RAYS, Owner, output_use
 from .value import Calculator, NotFinite, Value
 
 
-def export_world(world: Any, context: ExportContext) -> WorldData:
+def export_worlds(world: Any, context: ExportContext) -> list[WorldData]:
+    """As few skies as the rays see different ones; none where there is no light."""
     if world is None:
-        return WorldData()
-    owner = Owner("world", f"world '{world.name}'", context)
+        return []
+    place = f"world '{world.name}'"
+    _note_settings(world, Owner("world", place, context))
+    seen = {ray: _seen(world, Owner("world", place, context, ray)) for ray in RAYS}
+    # as in Cycles, a sky that is one colour for all rays has no limit
+    limited = any(_key(sky) != _key(seen["camera"]) or sky.texture is not None for sky in seen.values())
+    limit = compat.max_bounces(world) if limited else WorldData.max_bounces
+    skies: dict[Any, tuple[WorldData, set[str]]] = {}
+    for ray, sky in seen.items():
+        if compat.world_is_seen_by(world, ray) and any(sky.radiance):
+            skies.setdefault(_key(sky), (sky, set()))[1].add(ray)
+    for sky, rays in skies.values():
+        sky.hidden_from = frozenset(RAYS) - rays
+        sky.max_bounces = limit
+    return [sky for sky, _ in skies.values()]
+
+
+def _key(sky: WorldData) -> Any:
+    return (sky.radiance, sky.texture, sky.projection, sky.matrix.tobytes())
+
+
+def _seen(world: Any, owner: Owner) -> WorldData:
+    """What the owner's kind of ray sees."""
     try:
         data = _translate(world, owner)
     except RecursionError:
-        context.note(f"{owner.place} has nodes that are linked in a circle; it gives no light")
+        owner.context.note(f"{owner.place} has nodes that are linked in a circle; it gives no light")
         return WorldData()
     except NotFinite:
         return WorldData()  # noted where it was found
     wrong = not_finite(data)
     if wrong is not None:
-        context.note(f"{owner.place}: its {wrong} is not a finite number; it gives no light")
+        owner.context.note(f"{owner.place}: its {wrong} is not a finite number; it gives no light")
         return WorldData()
-    if data.texture is not None and compat.max_bounces(world) < 1024:  # a constant sky has no limit in Cycles either
-        context.note(f"{owner.place}: its Max Bounces are not supported; it lights all surfaces of a path")
     return data
 
 
 def _translate(world: Any, owner: Owner) -> WorldData:
     if not compat.uses_nodes(world):
         return WorldData(tuple(world.color))
-    _note_settings(world, owner)
     output = output_use(world.node_tree, "Surface", owner)
     if output is None or output.source("Surface").is_nothing:
         owner.context.note(f"{owner.place}: no node is connected to its output; it gives no light")
@@ -49,15 +68,17 @@ def _translate(world: Any, owner: Owner) -> WorldData:
 def _radiance(emission: Value, owner: Owner) -> WorldData:
     calc = Calculator(owner)
     color = calc.light_input(emission)
-    if color.texture is None or emission.lookup is None:
+    lookup = emission.lookup
+    if color.texture is None or lookup is None:
         return WorldData(color.value)
-    return WorldData(color.value, color.texture.index, np.array(emission.lookup.transform).reshape(3, 3))
+    return WorldData(
+        color.value, color.texture.index, np.array(lookup.transform).reshape(3, 3), projection=lookup.projection
+    )
 
 
 def _note_settings(world: Any, owner: Owner) -> None:
+    if not compat.uses_nodes(world):
+        return
     output = output_use(world.node_tree, "Volume", owner)
     if output is not None and output.is_linked("Volume"):
         owner.context.note(f"{owner.place}: volumes are not supported; the air is clear")
-    visibility = getattr(world, "cycles_visibility", None)
-    if visibility is not None and not (visibility.camera and visibility.diffuse and visibility.glossy):
-        owner.context.note(f"{owner.place}: its ray visibility is not supported; all rays see it")

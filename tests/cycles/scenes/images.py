@@ -138,6 +138,77 @@ def alpha_exr_straight():
 
 
 @scene
+def alpha_exr_packed():
+    """Of a file within the Blender file, set to either mode."""
+    face_on()
+    for x, mode in ((-1, "STRAIGHT"), (1, "PREMUL")):
+        picture = saved_image(f"packed-{mode}", with_alpha(), "exr")
+        picture.alpha_mode = mode
+        picture.pack()
+        made = sheet(painted(lambda tree, picture=picture: texture(tree, picture).outputs["Color"]), size=0.95)
+        made.location.x = x
+
+
+@scene
+def alpha_16_bits():
+    """The same of integers, the left one within the Blender file."""
+    face_on()
+    for x, packed in ((-1, True), (1, False)):
+        picture = saved_image(f"sixteen-{packed}", with_alpha(), depth="16")
+        picture.alpha_mode = "STRAIGHT"
+        if packed:
+            picture.pack()
+        made = sheet(painted(lambda tree, picture=picture: texture(tree, picture).outputs["Color"]), size=0.95)
+        made.location.x = x
+
+
+@scene
+def alpha_floats():
+    """Of pixels that are no file's, set to either mode."""
+    face_on()
+    for x, mode in ((-1, "STRAIGHT"), (1, "PREMUL")):
+        picture = bpy.data.images.new(f"floats-{mode}", 8, 8, alpha=True, float_buffer=True)
+        picture.pixels.foreach_set(with_alpha().astype(np.float32).ravel())
+        picture.alpha_mode = mode
+        made = sheet(painted(lambda tree, picture=picture: texture(tree, picture).outputs["Color"]), size=0.95)
+        made.location.x = x
+
+
+@scene
+def alpha_exr_behind_nodes():
+    """Which are given what alpha has made of the colours."""
+    face_on()
+    for x, mode in ((-1, "STRAIGHT"), (1, "PREMUL")):
+        pixels = with_alpha()
+        pixels[:4, :, 3] = np.linspace(0.1, 1, 8)  # Blender, which multiplies, knows no colours where alpha is 0
+        picture = saved_image(f"behind-{mode}", pixels, "exr")
+        picture.alpha_mode = mode
+
+        def build(tree, picture=picture):
+            color = texture(tree, picture, {"interpolation": "Closest"}).outputs["Color"]
+            return add(tree, "Gamma", Color=color, Gamma=2.0).outputs[0]
+
+        made = sheet(painted(build), size=0.95)
+        made.location.x = x
+
+
+@scene
+def alpha_exr_used():
+    """Where alpha is used, too."""
+    face_on()
+    for x, mode in ((-1, "STRAIGHT"), (1, "PREMUL")):
+        picture = saved_image(f"used-{mode}", with_alpha(), "exr")
+        picture.alpha_mode = mode
+
+        def build(tree, picture=picture):
+            node = texture(tree, picture, {"interpolation": "Closest"})
+            return mixed(tree, node.outputs["Alpha"], (0.2, 0.2, 0.2, 1), node.outputs["Color"])
+
+        made = sheet(painted(build), size=0.95)
+        made.location.x = x
+
+
+@scene
 def alpha_alone():
     alpha("STRAIGHT", output="Alpha")
 

@@ -5,9 +5,7 @@ import math
 
 import bpy
 import numpy as np
-from stage import add, ball, box, camera, floor, image, saved_image, scene, sky, sun
-
-UNSEEN = "a world's ray visibility is not supported, and said so"
+from stage import add, ball, box, camera, floor, image, material, saved_image, scene, sky, sun
 
 
 def things():
@@ -45,9 +43,9 @@ def pixels(width, height):
     return made
 
 
-def image_sky(width, **mapping):
+def image_sky(width, build=things, **mapping):
     """Smooth, with a window that is much brighter."""
-    things()
+    build()
     tree = sky((1, 1, 1))
     texture = add(tree, "TexEnvironment", {"image": image("sky", pixels(width, width // 2), floats=True)})
     node, coordinates = tree.nodes.new("ShaderNodeMapping"), tree.nodes.new("ShaderNodeTexCoord")
@@ -110,22 +108,77 @@ def added_shaders():
     tree.links.new(both.outputs[0], output.inputs["Surface"])
 
 
-@scene(within=5.0, why="what the camera alone sees of a world is not supported, and said so")
+def by_light_path(output, first, second):
+    """A world whose shader is the second where an output of Light Path is 1; the camera sees some of it."""
+    tree, world = empty()
+    mix, path = tree.nodes.new("ShaderNodeMixShader"), tree.nodes.new("ShaderNodeLightPath")
+    tree.links.new(path.outputs[output], mix.inputs[0])
+    tree.links.new(first(tree).outputs[0], mix.inputs[1])
+    tree.links.new(second(tree).outputs[0], mix.inputs[2])
+    tree.links.new(mix.outputs[0], world.inputs["Surface"])
+    bpy.context.scene.camera.rotation_euler = 1.5, 0, 0.05
+    bpy.context.scene.camera.data.lens = 20
+    return tree
+
+
+def plain(*color):
+    return lambda tree: add(tree, "Background", Color=(*color, 1))
+
+
+def textured(tree):
+    texture = add(tree, "TexEnvironment", {"image": image("sky", pixels(64, 32), floats=True)})
+    return add(tree, "Background", Color=texture.outputs["Color"], Strength=0.6)
+
+
+def shiny_things():
+    """With a mirror, whose reflection is the same in all models."""
+    things()
+    made, tree, output = material()
+    kind = "BsdfGlossy" if bpy.app.version < (4, 0) else "BsdfAnisotropic"
+    shader = add(tree, kind, {"distribution": "BECKMANN"}, Color=(0.9, 0.8, 0.7, 1), Roughness=0.0)
+    tree.links.new(shader.outputs[0], output.inputs["Surface"])
+    ball(made, (0.4, -1.2, 0.5), 0.5)
+
+
+@scene
 def mixed_by_light_path():
     """What the camera sees is another sky than what lights the scene."""
     things()
-    tree, output = empty()
-    seen, lighting = (
-        add(tree, "Background", Color=(0.1, 0.2, 0.9, 1)),
-        add(tree, "Background", Color=(0.8, 0.7, 0.6, 1)),
-    )
-    mix, path = tree.nodes.new("ShaderNodeMixShader"), tree.nodes.new("ShaderNodeLightPath")
-    tree.links.new(path.outputs["Is Camera Ray"], mix.inputs[0])
-    tree.links.new(lighting.outputs[0], mix.inputs[1])
-    tree.links.new(seen.outputs[0], mix.inputs[2])
-    tree.links.new(mix.outputs[0], output.inputs["Surface"])
-    bpy.context.scene.camera.rotation_euler = 1.5, 0, 0.05
+    by_light_path("Is Camera Ray", plain(0.8, 0.7, 0.6), plain(0.1, 0.2, 0.9))
+
+
+@scene
+def image_lights_and_camera_sees_a_color():
+    shiny_things()
+    by_light_path("Is Camera Ray", textured, plain(0.1, 0.2, 0.9))
+
+
+@scene
+def color_lights_and_camera_sees_an_image():
+    shiny_things()
+    by_light_path("Is Camera Ray", plain(0.8, 0.7, 0.6), textured)
+
+
+@scene
+def other_for_glossy_rays():
+    """Light that Cycles draws from the sky is of no kind, so that none is drawn."""
+    shiny_things()
+    by_light_path("Is Glossy Ray", plain(0.5, 0.4, 0.3), plain(0.1, 0.2, 0.9))
+    bpy.context.scene.world.cycles.sampling_method = "NONE"
+
+
+@scene
+def strength_by_light_path():
+    """Through Math, for diffuse rays twice what others see, and for the camera's none."""
+    shiny_things()
+    tree = sky((0.3, 0.4, 0.5))
+    path = add(tree, "LightPath")
+    twice = add(tree, "Math", {"operation": "ADD"})
+    tree.links.new(path.outputs["Is Diffuse Ray"], twice.inputs[0])
+    tree.links.new(path.outputs["Is Reflection Ray"], twice.inputs[1])
+    tree.links.new(twice.outputs[0], tree.nodes["Background"].inputs["Strength"])
     bpy.context.scene.camera.data.lens = 20
+    bpy.context.scene.world.cycles.sampling_method = "NONE"
 
 
 @scene
@@ -176,13 +229,31 @@ def image_unlinked():
     tree.links.new(texture.outputs["Color"], tree.nodes["Background"].inputs["Color"])
 
 
-@scene(within=5.0, why="mirror balls are not supported, and said so")
+def mirror_ball_sky(width, height, **mapping):
+    tree = sky((1, 1, 1))
+    picture = image("ball", pixels(width, height), floats=True)
+    texture = add(tree, "TexEnvironment", {"image": picture, "projection": "MIRROR_BALL"})
+    if mapping:
+        node = add(tree, "Mapping", Vector=add(tree, "TexCoord").outputs["Generated"])
+        for name, value in mapping.items():
+            node.inputs[name].default_value = value
+        tree.links.new(node.outputs["Vector"], texture.inputs["Vector"])
+    tree.links.new(texture.outputs["Color"], tree.nodes["Background"].inputs["Color"])
+
+
+@scene
 def mirror_ball():
     things()
-    tree = sky((1, 1, 1))
-    picture = image("ball", pixels(64, 64), floats=True)
-    texture = add(tree, "TexEnvironment", {"image": picture, "projection": "MIRROR_BALL"})
-    tree.links.new(texture.outputs["Color"], tree.nodes["Background"].inputs["Color"])
+    mirror_ball_sky(64, 64)
+
+
+@scene
+def mirror_ball_stretched():
+    """Of an image that is not square, turned so that the seam behind the ball is seen, too."""
+    things()
+    mirror_ball_sky(96, 64, Rotation=(0.4, -0.3, 2.9), Scale=(1, -1.6, 0.5))
+    bpy.context.scene.camera.rotation_euler = 1.5, 0, 0.05
+    bpy.context.scene.camera.data.lens = 20
 
 
 @scene
@@ -194,19 +265,71 @@ def image_of_8_bits():
     tree.links.new(texture.outputs["Color"], tree.nodes["Background"].inputs["Color"])
 
 
-@scene(within=10.0, why=UNSEEN)
+def hidden(*rays):
+    for ray in rays:
+        setattr(bpy.context.scene.world.cycles_visibility, ray, False)
+    bpy.context.scene.camera.data.lens = 18
+
+
+@scene
 def not_by_diffuse_surfaces():
-    """Seen by the camera alone."""
-    things()
+    """Seen by the camera and in what is glossy."""
+    shiny_things()
     sky((0.2, 0.5, 0.9))
     sun()
-    bpy.context.scene.camera.data.lens = 18
-    bpy.context.scene.world.cycles_visibility.diffuse = False
+    hidden("diffuse")
 
 
-@scene(within=10.0, why=UNSEEN)
+@scene
 def not_by_the_camera():
+    shiny_things()
+    sky((0.2, 0.5, 0.9))
+    hidden("camera")
+
+
+@scene
+def not_by_glossy():
+    shiny_things()
+    sky((0.2, 0.5, 0.9))
+    hidden("glossy")
+
+
+@scene
+def image_not_by_diffuse_surfaces():
+    image_sky(64, shiny_things, Rotation=(0.4, -0.3, 1.1))
+    hidden("diffuse")
+
+
+@scene
+def image_not_by_glossy():
+    image_sky(64, shiny_things, Rotation=(0.4, -0.3, 1.1))
+    hidden("glossy")
+
+
+@scene
+def unseen_under_a_transparent_film():
     things()
     sky((0.2, 0.5, 0.9))
-    bpy.context.scene.camera.data.lens = 18
-    bpy.context.scene.world.cycles_visibility.camera = False
+    hidden("camera")
+    bpy.context.scene.render.film_transparent = True
+
+
+@scene(bounces=3)
+def max_bounces():
+    """A window alone, which Cycles finds by its own samples alone: it lights first surfaces."""
+    things()
+    wall = floor()
+    wall.location, wall.rotation_euler = (0, 3, 0), (math.pi / 2, 0, 0)
+    tree = sky((1, 1, 1))
+    window = np.where(pixels(64, 32) > 2, pixels(64, 32), 0)
+    texture = add(tree, "TexEnvironment", {"image": image("window", window, floats=True), "interpolation": "Closest"})
+    tree.links.new(texture.outputs["Color"], tree.nodes["Background"].inputs["Color"])
+    bpy.context.scene.world.cycles.max_bounces = 0
+
+
+@scene(bounces=3)
+def max_bounces_of_one_color():
+    """Which has none."""
+    things()
+    sky((0.2, 0.5, 0.9))
+    bpy.context.scene.world.cycles.max_bounces = 0

@@ -242,7 +242,7 @@ TEST(Foreign, UnlitMaterialsAreSeenAsTheyAre) {
   EXPECT_EQ(maxComponent(m.diffuse.value) + maxComponent(m.specular.value), 0);
   EXPECT_TRUE(listHas(s.leftOut, "KHR_materials_unlit of material 'Sign'"));
   addDefaults(s);
-  expectNear(s.world.radiance, {1, 1, 1});  // it is no light for the rest
+  expectNear(s.worlds.at(0).radiance, {1, 1, 1});  // it is no light for the rest
 }
 
 TEST(Foreign, WrongJsonIsNamedByLineAndByte) {
@@ -312,7 +312,7 @@ TEST(Foreign, OnlyWhatIsDarkGetsASky) {
   const auto sky = [](const GlbBuilder& b) {
     Scene s = read(b);
     addDefaults(s);
-    const bool has = maxComponent(s.world.radiance) > 0;
+    const bool has = !s.worlds.empty();
     EXPECT_EQ(has, listHas(s.notes, "the scene has no lights: a constant sky of radiance 1"));
     return has;
   };

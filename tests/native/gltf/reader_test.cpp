@@ -116,9 +116,9 @@ TEST(Glb, ReadsEverything) {
   EXPECT_FLOAT_EQ(s.film.exposure, 2);
   EXPECT_TRUE(s.film.transparent);
   EXPECT_TRUE(s.zUp);
-  expectNear(s.world.radiance, {1, 2, 3});
-  EXPECT_FLOAT_EQ(s.world.matrix[1], 1);
-  EXPECT_FLOAT_EQ(s.images.at(s.textures.at(s.world.texture).image).floats.at(3), 4);
+  expectNear(s.worlds.at(0).radiance, {1, 2, 3});
+  EXPECT_FLOAT_EQ(s.worlds.at(0).matrix[1], 1);
+  EXPECT_FLOAT_EQ(s.images.at(s.textures.at(s.worlds.at(0).texture).image).floats.at(3), 4);
 
   // Lights.
   ASSERT_EQ(s.lights.size(), 6u);
@@ -217,6 +217,30 @@ TEST(Glb, DropsDegenerateTriangles) {
   EXPECT_TRUE(listHas(s.leftOut, "'Square': its mesh has no triangles"));
 }
 
+// A sky for each kind of ray; what is black is none.
+TEST(Glb, ReadsSeveralWorlds) {
+  GlbBuilder b = square();
+  const int texture = rawTexture<float>(b, 1, 1, 1, {1}), other = rawTexture<float>(b, 1, 1, 1, {2});
+  b.extension() = {{"version", 1},
+                   {"world",
+                    {{{"radiance", {1, 2, 3}}, {"visibility", {"camera"}}},
+                     {{"radiance", {0, 0, 0}}, {"texture", {{"index", other}}}},
+                     {{"texture", {{"index", texture}, {"projection", "mirror-ball"}}},
+                      {"visibility", {"diffuse", "glossy"}},
+                      {"maxBounces", 2}},
+                     {{"radiance", {4, 4, 4}}, {"visibility", json::array()}}}}};
+  const Scene scene = read(b);
+  ASSERT_EQ(scene.worlds.size(), 3u);
+  expectNear(scene.worlds[0].radiance, {1, 2, 3});
+  EXPECT_EQ(scene.worlds[0].visibility, kSeenByCamera);
+  EXPECT_EQ(scene.worlds[0].maxBounces, 1024);
+  EXPECT_EQ(scene.worlds[1].visibility, kSeenBySurfaces);
+  EXPECT_EQ(scene.worlds[1].maxBounces, 2);
+  EXPECT_EQ(scene.worlds[1].map, SkyMap::kMirrorBall);
+  EXPECT_EQ(scene.images.at(scene.textures.at(scene.worlds[1].texture).image).floats.at(0), 1);
+  EXPECT_EQ(scene.worlds[2].visibility, 0);
+}
+
 // Less light than none, and a light that does not follow every path.
 TEST(Glb, ReadsLightsThatTakeAwayAndEnd) {
   GlbBuilder b = square();
@@ -224,7 +248,7 @@ TEST(Glb, ReadsLightsThatTakeAwayAndEnd) {
   b.extension()["lights"] = {{{"type", "sun"}, {"irradiance", -2}, {"color", {1, 0, 0.5}}, {"maxBounces", 3}}};
   b.root["nodes"][0]["extensions"]["WARDMIS_scene"]["light"] = 0;
   const Scene scene = read(b);
-  expectNear(scene.world.radiance, {-1, 0, 0.5f});
+  expectNear(scene.worlds.at(0).radiance, {-1, 0, 0.5f});
   ASSERT_EQ(scene.lights.size(), 1u);
   expectNear(scene.lights[0].emitted, {-2, 0, -1});
   EXPECT_EQ(scene.lights[0].maxBounces, 3);
@@ -684,6 +708,14 @@ TEST(Glb, RefusesHostileScenes) {
       {"film.border: expected [x0, y0, x1, y1] within 4 x 4", extension({{"film", {{"resolution", {4, 4}}, {"border", {0, 0, 5, 4}}}}})},
       {"film.filter.type: expected one of", extension({{"film", {{"resolution", {4, 4}}, {"filter", {{"type", "sinc"}}}}}})},
       {"world.texture.index: refers to textures[0]", extension({{"world", {{"texture", {{"index", 0}}}}}})},
+      {"world[1].visibility[0]: expected one of \"camera\"", extension({{"world", {json::object(), {{"visibility", {"all"}}}}}})},
+      {"world.maxBounces: expected a whole number >= 0", extension({{"world", {{"radiance", {1, 1, 1}}, {"maxBounces", -1}}}})},
+      {"world: expected at most 16 worlds", extension({{"world", json(17, json::object())}})},
+      {"world.texture.projection: expected one of \"equirectangular\", \"mirror-ball\"",
+       [extension](GlbBuilder& b) {
+         const int texture = rawTexture<float>(b, 1, 1, 1, {1});
+         extension({{"world", {{"texture", {{"index", texture}, {"projection", "cube"}}}}}})(b);
+       }},
       {"world.texture.matrix: it has no inverse",
        [extension](GlbBuilder& b) {
          const int texture = rawTexture<float>(b, 1, 1, 1, {1});

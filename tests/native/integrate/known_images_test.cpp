@@ -28,7 +28,7 @@ TEST(Furnace, DiffuseSphereShowsItsAlbedo) {
     scene.materials = {ward({0.6f, 0.6f, 0.6f}, {0, 0, 0}, 0.1f, WardVariant::kWardGmd)};
     addSphere(scene, 128, 0);
     scene.meshes[0].parts[0].normals = {};
-    scene.world.radiance = {1, 1, 1};
+    worldOf(scene).radiance = {1, 1, 1};
     lookFrom(scene, 0.3f, 0.6f, 32);
     const FilmBuffer film = renderScene(scene, settings(64, integrator));
     for (const Pixel& p : film.pixels) EXPECT_NEAR(film.mean(p).x, 0.6, 0.6e-3);
@@ -46,7 +46,7 @@ TEST(Furnace, GmdPatchShowsItsAlbedo) {
       Scene scene;
       scene.materials = {ward({0, 0, 0}, {1, 1, 1}, static_cast<float>(ax), variant)};
       addPlane(scene, 100, 0);
-      scene.world.radiance = {1, 1, 1};
+      worldOf(scene).radiance = {1, 1, 1};
       lookFrom(scene, static_cast<float>(theta * kPid / 180), 0.1f, 16);
       const Measured m = measure(renderScene(scene, settings(256)));
       EXPECT_NEAR(m.mean, c[name].get<double>(), 5 * m.error + 1e-3 * c[name].get<double>())
@@ -74,7 +74,7 @@ TEST(Irradiance, TiltedNormals) {
       if (specular.x > 0 && degrees < 90) continue;  // the lobe is zero where the camera is below the normal's horizon
       Scene scene = plane();
       scene.materials[0].specular.value = specular;
-      scene.world.radiance = {1, 1, 1};
+      worldOf(scene).radiance = {1, 1, 1};
       const float a = degrees * kPi<float> / 180;
       const Vec3f n{0, std::sin(a), std::cos(a)};
       scene.meshes[0].parts[0].normals = Array<Vec3f>::of(std::vector<Vec3f>(4, n));
@@ -84,7 +84,7 @@ TEST(Irradiance, TiltedNormals) {
 
 TEST(Irradiance, ConstantSky) {
   Scene scene = plane();
-  scene.world.radiance = {2, 2, 2};
+  worldOf(scene).radiance = {2, 2, 2};
   EXPECT_NEAR(radiance(scene), 2, 2e-3);
 }
 
@@ -217,7 +217,7 @@ TEST(Irradiance, NegativeLight) {
   for (Allocation allocation : {Allocation::kEqual, Allocation::kSecondMoment, Allocation::kAuto})
     for (bool mesh : {false, true}) {
       Scene scene = plane();
-      scene.world.radiance = {1, 1, 1};
+      worldOf(scene).radiance = {1, 1, 1};
       if (mesh) {
         scene.materials.push_back(ward({0, 0, 0}, {0, 0, 0}, 0.1f, WardVariant::kWardGmd));
         scene.materials.back().emission.value = {-2, -2, -2};
@@ -236,7 +236,7 @@ TEST(Irradiance, NegativeLight) {
       EXPECT_EQ(statistics.counts.rare.total(), 0u);
     }
   Scene scene = plane();
-  scene.world.radiance = {-1, -1, -1};
+  worldOf(scene).radiance = {-1, -1, -1};
   EXPECT_NEAR(radiance(scene), -1, 1e-3);
 }
 

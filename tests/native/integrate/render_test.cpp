@@ -106,7 +106,7 @@ TEST(Render, MeasuresWhatASampleCosts) {
   Scene dark = mixedScene();
   dark.lights.clear();
   dark.materials[2].emission.value = {0, 0, 0};
-  dark.world = {};
+  dark.worlds.clear();
   const TechniqueCost none = measureCost(BuiltScene(dark, 2), s);
   EXPECT_EQ(none.sample[kLight], 0) << "a technique that is not there costs nothing";
 }
@@ -266,7 +266,7 @@ TEST(Render, CountsThemselvesAreNoNoise) {
   scene.materials = {ward({0.8f, 0.8f, 0.8f}, {0.04f, 0.04f, 0.04f}, 0.3f, WardVariant::kWardGmd)};
   addMesh(scene, {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}},
           {4, 5, 6, 4, 6, 7, 1, 2, 6, 1, 6, 5, 0, 1, 5, 0, 5, 4, 2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7}, 0);
-  scene.world.radiance = {0.05f, 0.05f, 0.05f};
+  worldOf(scene).radiance = {0.05f, 0.05f, 0.05f};
   Light point;
   point.emitted = {8, 8, 8};
   point.radius = 0.1f;
@@ -326,7 +326,7 @@ void addSunAndSky(Scene& scene, float irradiance, float angle) {
   sun.emitted = {irradiance, irradiance, irradiance};
   sun.angle = angle;
   scene.lights = {sun};
-  scene.world.radiance = {0.5f, 0.5f, 0.5f};
+  worldOf(scene).radiance = {0.5f, 0.5f, 0.5f};
 }
 
 // A plate under an even sky and a wide sun, seen at a grazing angle. All is smooth, so that Sobol's points are at their
@@ -381,7 +381,7 @@ TEST(Render, LightThatIsNotAimedAtIsNotForgotten) {
   scene.materials = {ward({0.8f, 0.8f, 0.8f}, {0, 0, 0}, 0.3f, WardVariant::kWardGmd)};
   addPlane(scene, 4, 0, -1);
   addSphere(scene, 24, 0);
-  scene.world.radiance = {0.5f, 0.5f, 0.5f};
+  worldOf(scene).radiance = {0.5f, 0.5f, 0.5f};
   Light lamp;
   lamp.type = LightType::kArea;
   lamp.emitted = {8, 8, 8};
@@ -488,7 +488,7 @@ TEST(Render, LeavesOutWhatIsNotNeeded) {
   scene.materials = {ward({0.5f, 0.5f, 0.5f}, {0, 0, 0}, 0.2f, WardVariant::kWardGmd)};
   addPlane(scene, 50, 0);
   lookFrom(scene, 0.4f, 1, 8);
-  scene.world.radiance = {1, 1, 1};
+  worldOf(scene).radiance = {1, 1, 1};
   Statistics sky;
   renderScene(scene, quick(), &sky);
   EXPECT_FALSE(sky.allocated);
@@ -496,7 +496,7 @@ TEST(Render, LeavesOutWhatIsNotNeeded) {
   EXPECT_EQ(sky.techniques, maskOf(kCosine));
   EXPECT_EQ(sky.counts.rays[kLight] + sky.counts.rays[kLobe], 0);
 
-  scene.world.radiance = {0, 0, 0};
+  worldOf(scene).radiance = {0, 0, 0};
   Light point;
   point.emitted = {2, 2, 2};
   point.toWorld.t = {0, 1, 2};
@@ -573,7 +573,7 @@ TEST(Render, StopsWhenAsked) {
 TEST(Render, InstancesAreCopies) {
   Scene copies;
   copies.materials = mixedScene().materials;
-  copies.world.radiance = {0.5f, 0.5f, 0.5f};
+  worldOf(copies).radiance = {0.5f, 0.5f, 0.5f};
   addSphere(copies, 12, 0);
   addPlane(copies, 0.5f, 2, 2);
   lookFrom(copies, 0.9f, 3, 24);
@@ -626,7 +626,7 @@ TEST(Render, RespectsVisibility) {
           sun.type = LightType::kSun;
           scene.lights = {sun};
         } else {
-          scene.world.radiance = {1, 1, 1};
+          worldOf(scene).radiance = {1, 1, 1};
         }
         lookFrom(scene, 0.2f, 0.5f, 8);
         if (hidden != kSeenByCamera) scene.camera->toWorld.t = scene.camera->toWorld.z * 0.3f;  // under the lid

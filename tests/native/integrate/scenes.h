@@ -68,6 +68,12 @@ inline void lookFrom(Scene& scene, float theta, float half, int resolution) {
   scene.film = {resolution, resolution, 0, 0, resolution, resolution, FilterType::kBox, 1, 1, false};
 }
 
+// The scene's sky; there is one from the first call on.
+inline World& worldOf(Scene& scene) {
+  if (scene.worlds.empty()) scene.worlds.emplace_back();
+  return scene.worlds[0];
+}
+
 // A sky that shows `image`, equirectangular, z up.
 inline void addSky(Scene& scene, Image image) {
   scene.images.push_back(std::move(image));
@@ -75,8 +81,8 @@ inline void addSky(Scene& scene, Image image) {
   t.image = 0;
   t.wrapV = Wrap::kClamp;
   scene.textures.push_back(t);
-  scene.world.radiance = {1, 1, 1};
-  scene.world.texture = 0;
+  worldOf(scene).radiance = {1, 1, 1};
+  worldOf(scene).texture = 0;
   scene.zUp = false;  // the tests' frame is the image's
 }
 

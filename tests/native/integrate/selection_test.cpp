@@ -59,7 +59,7 @@ double irradiance(double v0) {
 // The light technique alone: the mean of L cos/pdf over 64 batches of 2^15 points.
 Measured estimate(const Scene& scene, SamplerType type) {
   constexpr uint32_t kBatches = 64, kPoints = 1 << 15;
-  const Environment sky(scene);
+  const Environment sky(scene, scene.worlds[0]);
   const Sampler sampler(type, 1, kPoints);
   double sum = 0, square = 0;
   for (uint32_t batch = 0; batch < kBatches; ++batch) {
@@ -203,7 +203,7 @@ TEST(Selection, AStretchedSkyKeepsItsLight) {
   Scene scene = diffusePlane(16);
   addSky(scene, 512, 256, 0.75);
   const float matrix[9] = {0.6f, 0.3f, 0, -0.5f, 1.9f, 0.2f, 0.1f, 0, -1.2f};
-  std::copy_n(matrix, 9, scene.world.matrix);
+  std::copy_n(matrix, 9, worldOf(scene).matrix);
   double want = 0;
   constexpr int kRows = 1500, kColumns = 3000;
   for (int j = 0; j < kRows; ++j)
@@ -222,6 +222,76 @@ TEST(Selection, AStretchedSkyKeepsItsLight) {
     const Measured m = radiance(scene, SamplerType::kSobol, weights, 512);
     EXPECT_LT(m.error, 3e-3 * want);
     EXPECT_NEAR(m.mean, want, 5 * m.error + 1e-3 * want);  // the image has 256 rows
+  }
+}
+
+// A mirror ball's image: smooth, with a spot that is 200 times as bright, near the rim or off it.
+double ballAt(double x, double y, double x0) {
+  return 1 + y + 200 * std::exp(-(std::pow(x - x0, 2) + std::pow(y - 0.5, 2)) / 0.0008);
+}
+
+Scene underABall(int size, double x0) {
+  Scene scene = diffusePlane(16);
+  Image image;
+  image.width = image.height = size, image.channels = 1;
+  for (int y = 0; y < size; ++y)
+    for (int x = 0; x < size; ++x)
+      image.floats.push_back(static_cast<float>(ballAt((x + 0.5) / size, (y + 0.5) / size, x0)));
+  test::addSky(scene, std::move(image));
+  worldOf(scene).map = SkyMap::kMirrorBall;
+  return scene;
+}
+
+// The ball's image is the disk of x, z of the half vector between the direction and the viewer at -y.
+TEST(Selection, MirrorBallsGiveTheirIrradiance) {
+  for (const double x0 : {0.6, 0.95}) {
+    double want = 0;
+    constexpr int kRows = 1000, kColumns = 1000;
+    for (int j = 0; j < kRows; ++j)
+      for (int i = 0; i < kColumns; ++i) {
+        const double z2 = (j + 0.5) / kRows, z = std::sqrt(z2), r = std::sqrt(1 - z2);  // cos z dz = dz^2/2
+        const double phi = 2 * kPid * (i + 0.5) / kColumns;
+        const double x = r * std::cos(phi), y = r * std::sin(phi), half = std::sqrt(x * x + (y - 1) * (y - 1) + z2);
+        want += ballAt(0.5 + 0.5 * x / half, 0.5 + 0.5 * z / half, x0) / (double(kRows) * kColumns);
+      }
+    const Scene scene = underABall(512, x0);
+    const Measured light = estimate(scene, SamplerType::kSobol);
+    EXPECT_LT(light.error, 2e-3 * want * kPid);
+    EXPECT_NEAR(light.mean, want * kPid, 5 * light.error + 5e-4 * want * kPid) << x0;
+    for (Weights weights : {Weights::kBalance, Weights::kMaximum}) {
+      const Measured m = radiance(scene, SamplerType::kSobol, weights, 512);
+      EXPECT_LT(m.error, 3e-3 * want);
+      EXPECT_NEAR(m.mean, want, 5 * m.error + 1e-3 * want) << x0 << ' ' << int(weights);
+    }
+  }
+}
+
+// The density that is told is the one that is drawn from: the mean of 1/pdf is the sphere.
+TEST(Selection, DensitiesOfAMirrorBallAreThoseOfItsDirections) {
+  for (const int size : {7, 64, 1000}) {
+    Scene scene = underABall(size, 0.6);
+    const float matrix[9] = {0.6f, 0.3f, 0, -0.5f, 1.9f, 0.2f, 0.1f, 0, -1.2f};
+    for (const bool stretched : {false, true}) {
+      if (stretched) std::copy_n(matrix, 9, worldOf(scene).matrix);
+      const Environment sky(scene, scene.worlds[0]);
+      const Sampler sampler(SamplerType::kSobol, 1, 1 << 12);
+      double sum = 0, square = 0, up = 0;
+      constexpr int kBatches = 16, kPoints = 1 << 12;
+      for (uint32_t batch = 0; batch < kBatches; ++batch) {
+        double mean = 0;
+        for (uint32_t k = 0; k < kPoints; ++k) {
+          const Vec3f d = sky.sample(sampler.getChoice(sampler.pixelKey(batch, 0), kLightPoint, k));
+          mean += 1 / double(sky.pdf(d)) / kPoints;
+          up += (d.y > 0.2f) / double(sky.pdf(d)) / (double(kPoints) * kBatches);
+        }
+        sum += mean, square += mean * mean;
+      }
+      const double mean = sum / kBatches;
+      const double error = std::sqrt(std::max(0.0, square / kBatches - mean * mean) / (kBatches - 1));
+      EXPECT_LT(error, 0.02 * mean);
+      EXPECT_NEAR(mean, 4 * kPid, 5 * error + 1e-3) << size << ' ' << stretched;
+      EXPECT_NEAR(up, 2 * kPid * 0.8, 0.05 * up) << size << ' ' << stretched;
+    }
   }
 }
 
