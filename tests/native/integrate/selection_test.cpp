@@ -278,7 +278,7 @@ TEST(Selection, DensitiesOfAMirrorBallAreThoseOfItsDirections) {
       for (uint32_t batch = 0; batch < kBatches; ++batch) {
         double mean = 0;
         for (uint32_t k = 0; k < kPoints; ++k) {
-          const Vec3f d = sky.sample(sampler.getChoice(sampler.pixelKey(batch, 0), kLightPoint, k));
+          const Vec3f d = sky.sample(sampler.getChoice(sampler.pixelKey(batch, 0), 5, k));
           mean += 1 / double(sky.pdf(d)) / kPoints;
           up += (d.y > 0.2f) / double(sky.pdf(d)) / (double(kPoints) * kBatches);
         }
