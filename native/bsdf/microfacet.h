@@ -128,6 +128,7 @@ T beckmannSlope(T cosO, T sinO, T u) {
   x = std::min(x, T(0.5) * hi);
   for (int i = 0; i < 60; ++i) {
     const T error = f(x) - target;
+    if (std::abs(error) <= T(2) * std::numeric_limits<T>::epsilon() * target) break;  // the rounding of f
     (error > T(0) ? hi : lo) = x;
     const T next = x - error * rootPi / (std::exp(-x * x) * (cosO - x * sinO));
     const T moved = next > lo && next < hi ? next : T(0.5) * (lo + hi);
