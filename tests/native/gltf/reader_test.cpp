@@ -218,7 +218,7 @@ TEST(Glb, DropsDegenerateTriangles) {
 }
 
 // A sky for each kind of ray; what is black is none.
-TEST(Glb, ReadsSeveralWorlds) {
+GlbBuilder withSeveralWorlds() {
   GlbBuilder b = square();
   const int texture = rawTexture<float>(b, 1, 1, 1, {1}), other = rawTexture<float>(b, 1, 1, 1, {2});
   b.extension() = {{"version", 1},
@@ -229,7 +229,10 @@ TEST(Glb, ReadsSeveralWorlds) {
                       {"visibility", {"diffuse", "glossy"}},
                       {"maxBounces", 2}},
                      {{"radiance", {4, 4, 4}}, {"visibility", json::array()}}}}};
-  const Scene scene = read(b);
+  return b;
+}
+TEST(Glb, ReadsSeveralWorlds) {
+  const Scene scene = read(withSeveralWorlds());
   ASSERT_EQ(scene.worlds.size(), 3u);
   expectNear(scene.worlds[0].radiance, {1, 2, 3});
   EXPECT_EQ(scene.worlds[0].visibility, kSeenByCamera);
@@ -812,9 +815,13 @@ TEST(Glb, ReadsTheCorpus) {
     foreign.root["nodes"][0]["children"] = {1};
     foreign.add("nodes", {{"mesh", 0}});
     foreign.root["scenes"] = {{{"nodes", {1}}}};
-    const std::pair<const char*, GlbBuilder> seeds[] = {{"square", square()}, {"everything", everything()},
-                                                        {"sparse", sparse},   {"png", png},
-                                                        {"foreign", foreign}, {"program", withEveryOperation()}};
+    const std::pair<const char*, GlbBuilder> seeds[] = {{"square", square()},
+                                                        {"everything", everything()},
+                                                        {"sparse", sparse},
+                                                        {"png", png},
+                                                        {"foreign", foreign},
+                                                        {"program", withEveryOperation()},
+                                                        {"worlds", withSeveralWorlds()}};
     for (const auto& [name, b] : seeds) {
       const Bytes bytes = seed(b);
       std::ofstream(fs::path(to) / name, std::ios::binary)
@@ -834,7 +841,7 @@ TEST(Glb, ReadsTheCorpus) {
     }
     files++;
   }
-  EXPECT_GE(files, 5);
+  EXPECT_GE(files, 7);
 }
 
 }  // namespace
