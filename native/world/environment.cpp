@@ -62,10 +62,9 @@ Environment::Environment(const Scene& scene, const World& world) : scene_(scene)
   const int rows = ball ? static_cast<int>(std::ceil(kPi<double> / 4 * side)) : image.height;
   width_ = std::min(columns, kMaxTableWidth), height_ = std::min(rows, kMaxTableHeight);
   const int subX = (columns + width_ - 1) / width_ * 2, subY = (rows + height_ - 1) / height_ * 2;
-  const auto uvOf = [&](float u, float v) -> Vec2f {
-    if (!ball) return {u, v};
+  const auto onBall = [](float u, float v) {
     const float phi = kPi<float> * (1 - 2 * u), radius = 0.5f * std::sin(0.5f * kPi<float> * v);
-    return {0.5f + radius * std::sin(phi), 0.5f + radius * std::cos(phi)};
+    return Vec2f{0.5f + radius * std::sin(phi), 0.5f + radius * std::cos(phi)};
   };
   for (int y = 0; y < height_; ++y) {
     const bool up = 2 * y >= height_;
@@ -77,23 +76,29 @@ Environment::Environment(const Scene& scene, const World& world) : scene_(scene)
   std::vector<double> weights(static_cast<size_t>(width_) * static_cast<size_t>(height_));
   TextureUse use;
   use.texture = world.texture;
-  tbb::parallel_for(0, height_, [&](int y) {
-    const double band = double(bands_[static_cast<size_t>(y)].height);
-    for (int x = 0; x < width_; ++x) {
-      double sum = 0;
-      for (int j = 0; j <= subY; ++j)
-        for (int i = 0; i <= subX; ++i) {
-          const float u =
-              (static_cast<float>(x) + (static_cast<float>(i)) / static_cast<float>(subX)) / static_cast<float>(width_);
-          const float v = (static_cast<float>(y) + (static_cast<float>(j)) / static_cast<float>(subY)) /
-                          static_cast<float>(height_);
-          sum += strength(sampleRgb(scene, use, uvOf(u, v)) * world.radiance);
-        }
-      const float stretched = stretch(toImage(fromImage(inCell(x, static_cast<size_t>(y), 0.5f, 0.5f))));
-      weights[static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x)] =
-          sum / double((subX + 1) * (subY + 1)) * band * 2 * kPi<double> / width_ / double(stretched);
-    }
-  });
+  const auto fill = [&](auto uvOf) {
+    tbb::parallel_for(0, height_, [&](int y) {
+      const double band = double(bands_[static_cast<size_t>(y)].height);
+      for (int x = 0; x < width_; ++x) {
+        double sum = 0;
+        for (int j = 0; j <= subY; ++j)
+          for (int i = 0; i <= subX; ++i) {
+            const float u = (static_cast<float>(x) + (static_cast<float>(i)) / static_cast<float>(subX)) /
+                            static_cast<float>(width_);
+            const float v = (static_cast<float>(y) + (static_cast<float>(j)) / static_cast<float>(subY)) /
+                            static_cast<float>(height_);
+            sum += strength(sampleRgb(scene, use, uvOf(u, v)) * world.radiance);
+          }
+        const float stretched = stretch(toImage(fromImage(inCell(x, static_cast<size_t>(y), 0.5f, 0.5f))));
+        weights[static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x)] =
+            sum / double((subX + 1) * (subY + 1)) * band * 2 * kPi<double> / width_ / double(stretched);
+      }
+    });
+  };
+  if (ball)
+    fill(onBall);
+  else
+    fill([](float u, float v) { return Vec2f{u, v}; });
   table_ = AliasTable(weights);
   integral_ = static_cast<float>(table_.sum());
   exists_ = !table_.empty();

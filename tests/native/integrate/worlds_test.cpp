@@ -36,23 +36,28 @@ Scene glossyPlane(bool image) {
   return scene;
 }
 
-constexpr std::pair<Integrand, Integrator> kModes[] = {{Integrand::kSplit, Integrator::kDirect},
-                                                       {Integrand::kJoint, Integrator::kDirect},
-                                                       {Integrand::kJoint, Integrator::kPath}};
+struct Mode {
+  Integrand integrand;
+  Integrator integrator;
+};
+constexpr Mode kModes[] = {{Integrand::kSplit, Integrator::kDirect},
+                           {Integrand::kJoint, Integrator::kDirect},
+                           {Integrand::kJoint, Integrator::kPath}};
 
 // Diffuse rays alone bring the diffuse part, whoever shares the samples; glossy ones bring the rest, the camera
 // nothing.
 TEST(Worlds, LightTheLobesThatSeeThem) {
   for (const bool image : {false, true})
-    for (const auto& [integrand, integrator] : kModes) {
+    for (const Mode& mode : kModes) {
       const auto seenBy = [&](int visibility) {
         Scene scene = glossyPlane(image);
         worldOf(scene).visibility = static_cast<uint8_t>(visibility);
-        return measure(renderScene(scene, settings(integrand, integrator)));
+        return measure(renderScene(scene, settings(mode.integrand, mode.integrator)));
       };
       const Measured all = seenBy(kSeenByAll), diffuse = seenBy(kSeenByDiffuse), glossy = seenBy(kSeenByGlossy);
       const double want = double(kDiffuse) * (image ? 2 / 3.0 : 1);
-      EXPECT_NEAR(diffuse.mean, want, 5 * diffuse.error + 1e-3 * want) << image << int(integrand) << int(integrator);
+      EXPECT_NEAR(diffuse.mean, want, 5 * diffuse.error + 1e-3 * want)
+          << image << int(mode.integrand) << int(mode.integrator);
       EXPECT_NEAR(diffuse.mean + glossy.mean, all.mean, 5 * (all.error + diffuse.error + glossy.error) + 1e-4);
       EXPECT_GT(glossy.mean, 0.2 * want);
       EXPECT_LT(all.error + diffuse.error + glossy.error, 0.02 * want);
@@ -63,7 +68,7 @@ TEST(Worlds, LightTheLobesThatSeeThem) {
 
 // The same of a lamp that surfaces meet.
 TEST(Worlds, LampsLightTheLobesThatSeeThem) {
-  for (const auto& [integrand, integrator] : kModes) {
+  for (const Mode& mode : kModes) {
     const auto seenBy = [&](int visibility) {
       Scene scene = glossyPlane(false);
       scene.worlds.clear();
@@ -75,13 +80,13 @@ TEST(Worlds, LampsLightTheLobesThatSeeThem) {
       scene.lights = {area};
       lookFrom(scene, 0.5f, 0.005f, 16);
       scene.camera->toWorld.t = scene.camera->toWorld.z * 1.5f;
-      return measure(renderScene(scene, settings(integrand, integrator)));
+      return measure(renderScene(scene, settings(mode.integrand, mode.integrator)));
     };
     const Measured all = seenBy(kSeenByAll), diffuse = seenBy(kSeenByDiffuse), glossy = seenBy(kSeenByGlossy);
     // of a square seen from below its middle: E = 4 a/sqrt(1 + a^2) atan(a/sqrt(1 + a^2)), a half side by distance
     const double a = 2, s = std::sqrt(1 + a * a);
     const double want = double(kDiffuse) / kPi<double> * 4 * a / s * std::atan(a / s);
-    EXPECT_NEAR(diffuse.mean, want, 5 * diffuse.error + 1e-3 * want) << int(integrand) << int(integrator);
+    EXPECT_NEAR(diffuse.mean, want, 5 * diffuse.error + 1e-3 * want) << int(mode.integrand) << int(mode.integrator);
     EXPECT_NEAR(diffuse.mean + glossy.mean, all.mean, 5 * (all.error + diffuse.error + glossy.error) + 1e-4);
     EXPECT_GT(glossy.mean, 0.2 * want);
   }
