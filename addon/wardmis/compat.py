@@ -130,14 +130,30 @@ def corner_normals(mesh: Any) -> np.ndarray:
     return normals
 
 
-def uvs(mesh: Any) -> np.ndarray | None:
-    """The UVs that renders use, one for each corner, (n, 2) float32; None: there are none."""
-    layer = next((layer for layer in mesh.uv_layers if layer.active_render), None)
+def uvs(mesh: Any, name: str = "") -> np.ndarray | None:
+    """The UVs of this name, or else those that renders use, one for each corner, (n, 2) float32; None: there are none."""
+    layer = next((layer for layer in mesh.uv_layers if (layer.name == name if name else layer.active_render)), None)
     if layer is None:
         return None
     if VERSION >= (3, 5, 0):
         return _foreach(layer.uv, "vector", 2, np.float32)
     return _raw_or_foreach(layer.data, "uv", 2, np.float32)
+
+
+def attribute_values(attribute: Any, name: str, width: int) -> np.ndarray:
+    """(n,) or (n, width) float32."""
+    kinds: dict[str, type] = {"INT": np.int32, "INT8": np.int8, "BOOLEAN": bool}
+    return _foreach(attribute.data, name, width, kinds.get(attribute.data_type, np.float32)).astype(np.float32)
+
+
+def corner_faces(mesh: Any) -> np.ndarray:
+    """The face of every corner, (n,) int."""
+    return np.repeat(np.arange(len(mesh.polygons)), _foreach(mesh.polygons, "loop_total", 1, np.int32))
+
+
+def undeformed_positions(mesh: Any) -> np.ndarray:
+    """Before modifiers that only move, (n, 3) float32."""
+    return _foreach(mesh.vertices, "undeformed_co", 3, np.float32)
 
 
 # --- lights, world, objects -----------------------------------------------------------------------------------------
@@ -195,6 +211,11 @@ def uses_nodes(owner: Any) -> bool:
 
 
 # --- nodes ----------------------------------------------------------------------------------------------------------
+
+# Whose formulas this Blender's Cycles has: 3.4's (3), 4.3's (4) or 5.2's (5), which docs/scene-format.md calls `version`.
+CYCLES = 3 if VERSION < (4, 0, 0) else 4 if VERSION < (5, 0, 0) else 5
+MAGIC = 4 if VERSION < (5, 2, 0) else 5
+BRICK = 3 if VERSION < (3, 5, 0) else 5
 
 # Cycles is given trees without groups, reroutes and muted nodes, which convert nothing any more.
 NODE_TREES_ARE_INLINED = VERSION >= (5, 0, 0)

@@ -11,7 +11,7 @@ from __future__ import annotations
 import bpy
 
 from . import compat
-from .export.shader import SHADERS
+from .export.program.closures import SHADERS
 
 # a leading dot keeps the tree out of the menus of node groups
 TREE_NAME = ".Ward BSDF"
@@ -140,12 +140,19 @@ class WardBSDFNode(bpy.types.ShaderNodeCustomGroup):
         layout.prop(self, "variant", text="")
 
 
+HIDDEN = {WardBSDFNode.bl_idname, "ShaderNodeBackground"}  # the one is first anyway, the other a world's
+
+
 def draw_menu(self, context):
     if context.space_data.tree_type != "ShaderNodeTree" or context.space_data.shader_type != "OBJECT":
         return
     kinds = [WardBSDFNode.bl_idname]
     if context.engine == "WARDMIS" and compat.add_shader_menu_is_for_blenders_engines():
-        kinds = [*SHADERS, "ShaderNodeOutputMaterial"]
+        kinds = [
+            *kinds,
+            *(kind for kind in SHADERS if hasattr(bpy.types, kind) and kind not in HIDDEN),
+            "ShaderNodeOutputMaterial",
+        ]
     for kind in kinds:
         add = self.layout.operator("node.add_node", text=bpy.types.Node.bl_rna_get_subclass(kind).name)
         add.type = kind

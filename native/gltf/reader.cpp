@@ -82,7 +82,7 @@ Film readFilm(const Json& json) {
   }
   if (const auto filter = json.find("filter")) {
     film.filter = filter->at("type").choice(kFilters);
-    film.filterWidth = filter->numberOr("width", film.filterWidth, 0.01f, 100);
+    film.filterWidth = filter->numberOr("width", film.filterWidth, 1e-6f, 100);
   }
   film.exposure = json.numberOr("exposure", 1, 0);
   film.transparent = json.booleanOr("transparent", false);

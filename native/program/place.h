@@ -41,7 +41,7 @@ inline float attributeNumber(const AttributeValue& a, uint32_t shift, float widt
   return a.components == 0 ? 0 : a.components < 3 ? v.x : (v.x + v.y + v.z) * (1 / 3.0f);
 }
 inline float attributeAlpha(const AttributeValue& a, uint32_t shift, float width) {
-  if (a.components < 4) return a.components == 0 ? 0 : 1;
+  if (a.components < 4) return 1;
   return shift == 0 ? a.w[0] : a.w[0] + a.w[shift] * width;
 }
 

@@ -88,7 +88,7 @@ struct MeshPart {
   Array<Vec3f> normals;                     // shading normals, unit length not guaranteed
   Array<Vec2f> uvs;                         // v = 0 at the bottom
   std::vector<VertexAttribute> attributes;  // in the order of the program's; those of all its materials are the same
-  Array<Vec3f> generated;                   // in the frame of the file
+  Array<Vec3f> generated;                   // Generated coordinates
   std::vector<Primitive> primitives;
 };
 struct Mesh {
@@ -109,7 +109,7 @@ enum Visibility : uint8_t {
 // What programs read of an object.
 struct ObjectData {
   bool hasGenerated = false;
-  float generated[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  // row by row, from object space in the scene's frame
+  float generated[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  // row by row, from object space
   float color[4] = {1, 1, 1, 1};
   float index = 0, random = 0;
   struct Value {

@@ -9,13 +9,13 @@
 namespace wardmis {
 namespace {
 
-// From the file's axes to those that the scene is told in, and back to places in world space.
+// From the file's axes of the world to those that the scene is told in. Object space is the mesh's own in both.
 struct FrameOf {
   bool zUp;
   Vec3f operator()(Vec3f v) const { return zUp ? Vec3f{v.x, -v.z, v.y} : v; }
   Affine operator()(const Affine& m) const {
     const auto& f = *this;
-    return zUp ? Affine{f(m.x), f(-m.z), f(m.y), f(m.t)} : m;
+    return {f(m.x), f(m.y), f(m.z), f(m.t)};
   }
 };
 
@@ -83,8 +83,8 @@ AttributeValue ownTangent(const float* uv0, const float* uv1, const float* uv2, 
   return out;
 }
 
-void fillAttributes(const ShadedPoint& p, const Program& program, FrameOf frame, const uint32_t* i, const Linear& at,
-                    Vec3f e1, Vec3f e2, ShadingContext& c) {
+void fillAttributes(const ShadedPoint& p, const Program& program, const uint32_t* i, const Linear& at, Vec3f e1,
+                    Vec3f e2, ShadingContext& c) {
   const MeshPart& part = *p.shape.part;
   for (size_t k = 0; k < program.attributes.size(); ++k) {
     AttributeValue& out = c.attributes[k];
@@ -107,7 +107,6 @@ void fillAttributes(const ShadedPoint& p, const Program& program, FrameOf frame,
       }
       out.xyz = {{value[0], value[1], value[2]}, {dx[0], dx[1], dx[2]}, {dy[0], dy[1], dy[2]}};
       out.w[0] = value[3], out.w[1] = dx[3], out.w[2] = dy[3];
-      if (tangents) out.xyz = {frame(out.xyz.value), {}, {}};
       out.components = static_cast<uint8_t>(n);
     } else if (wanted.kind == ProgramAttribute::Kind::kNamed && p.placement.object != nullptr) {
       const auto& list = p.placement.object->attributes;
@@ -149,17 +148,16 @@ void fill(const Scene& scene, const ShadedPoint& p, const Program& program, Shad
   }
   c.parametric = at.of({1, 0, 0}, {0, 1, 0}, {0, 0, 0});
   // the mesh's own positions, whether the placement is flat or not
-  const Vec3f o0 = frame(part.positions[i[0]]), o1 = frame(part.positions[i[1]]), o2 = frame(part.positions[i[2]]);
+  const Vec3f o0 = part.positions[i[0]], o1 = part.positions[i[1]], o2 = part.positions[i[2]];
   if ((program.reads & kReadsAttributes) != 0) {
-    c.interpolatedNormal = part.normals.empty()
-                               ? safeNormalize(cross(o1 - o0, o2 - o0))
-                               : frame(at.value(part.normals[i[0]], part.normals[i[1]], part.normals[i[2]]));
-    fillAttributes(p, program, frame, i, at, o1 - o0, o2 - o0, c);
+    c.interpolatedNormal = part.normals.empty() ? safeNormalize(cross(o1 - o0, o2 - o0))
+                                                : at.value(part.normals[i[0]], part.normals[i[1]], part.normals[i[2]]);
+    fillAttributes(p, program, i, at, o1 - o0, o2 - o0, c);
   }
   if ((program.reads & kReadsGenerated) != 0) {
     if (!part.generated.empty()) {
       const Array<Vec3f>& g = part.generated;
-      c.generated = at.of(frame(g[i[0]]), frame(g[i[1]]), frame(g[i[2]]));
+      c.generated = at.of(g[i[0]], g[i[1]], g[i[2]]);
     } else {
       c.generated = at.of(o0, o1, o2);
       if (const ObjectData* data = p.placement.object; data != nullptr && data->hasGenerated) {
@@ -197,6 +195,10 @@ void fill(const Scene& scene, const ShadedPoint& p, const Program& program, Shad
   }
   c.path = p.path;
   c.rayLength = p.rayLength;
+  if (p.path.depth == 0 && scene.camera) {  // rays of the camera begin at its near plane, as Cycles' do
+    const float depth = std::abs(dot(p.wo, scene.camera->toWorld.z));
+    c.rayLength -= depth > 0 ? scene.camera->clipNear / depth : 0;
+  }
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Small scenes against Cycles, block by block: `./dev test cycles [PATTERN]` takes those whose name has PATTERN in it.
 
-Writes the table of what was compared to build/cycles/VERSION.md and .json, the images beside it, and closes with 'N passed, N failed'.
+`./dev test cycles parity` compares nodes alone, output by output. Writes the table of what was compared to build/cycles/VERSION.md and .json, the images beside it, and closes with 'N passed, N failed'.
 A scene that deviates is rendered again with other seeds, and fails when a block does so both times, to the same side. By chance
 one block and channel of 16 000 deviates: of the table's 20 000 about one, and one run in some 20 000 fails."""
 
@@ -22,6 +22,7 @@ ROOT = HERE.parents[1]
 sys.path[:0] = [str(HERE), str(ROOT / "tools")]
 
 import blocks  # noqa: E402
+import parity_rows  # noqa: E402
 
 AGAIN = 100_000  # the seeds of a second render
 CERTAIN = 10.0  # standard errors that need none
@@ -92,6 +93,17 @@ def compared(folder: Path, name: str) -> Row:
     return row
 
 
+def parity(folder: Path) -> list[parity_rows.Row]:
+    """Node by node, pixel by pixel; writes the table of nodes beside that of scenes."""
+    done = blender("--python-exit-code", "1", "--python", HERE / "parity.py", "--", folder)
+    (folder / "parity.log").write_text(done.stdout)
+    if done.returncode != 0:
+        sys.exit(f"the nodes could not be rendered:\n{done.stdout[-2000:]}")
+    found = parity_rows.rows(folder)
+    folder.with_name(f"{folder.name}-nodes.md").write_text(parity_rows.table(found))
+    return found
+
+
 def table(rows: list[Row]) -> str:
     lines = ["| scene | worst block | ± | median | |", "|---|---:|---:|---:|---|"]
     for row in rows:
@@ -122,8 +134,16 @@ def main(pattern: str) -> int:
     folder.with_suffix(folder.suffix + ".md").write_text(table(rows))
     folder.with_suffix(folder.suffix + ".json").write_text(json.dumps([vars(row) for row in rows], indent=1))
     failed = sum(bool(row.fault) for row in rows)
-    print(f"{len(rows) - failed} passed, {failed} failed")
-    return 1 if failed or not rows else 0
+    passed = len(rows) - failed
+    if pattern in "parity":  # also where all is wanted
+        nodes = parity(folder)
+        for node in nodes:
+            if node.deviates:
+                print(f"FAIL parity: {node.case}: {node.worst:.1e}, and {node.within:.0e} is allowed", flush=True)
+        failed += (deviating := sum(node.deviates for node in nodes))
+        passed += len(nodes) - deviating
+    print(f"{passed} passed, {failed} failed")
+    return 1 if failed or not passed else 0
 
 
 if __name__ == "__main__":

@@ -1,12 +1,97 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What stands in for the attributes of meshes: the mean of their colours."""
+"""The attributes of meshes and objects that programs read."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import Any
 
 import bpy
 import numpy as np
+
+from .. import compat
+
+DEFAULT_COLOR = "color:"  # the name of a mesh's colours that are active for rendering
+OF_OBJECT = ("object:", "instancer:", "layer:")  # how names of attributes begin that are not the mesh's
+
+# how Blender calls the values of each type that Cycles reads, and how many numbers they are
+TYPES = {
+    "FLOAT": ("value", 1),
+    "INT": ("value", 1),
+    "INT8": ("value", 1),
+    "BOOLEAN": ("value", 1),
+    "FLOAT2": ("vector", 2),
+    "FLOAT_VECTOR": ("vector", 3),
+    "FLOAT_COLOR": ("color", 4),
+    "BYTE_COLOR": ("color", 4),
+}
+
+
+@dataclass(frozen=True)
+class MeshAttribute:
+    values: np.ndarray  # (n,) or (n, 2 to 4) float32
+    by_corner: bool  # else by vertex
+
+
+def read_attribute(mesh: Any, name: str) -> MeshAttribute | None:
+    """None where the mesh has none of the name that Cycles reads."""
+    if name.startswith(OF_OBJECT):
+        return None
+    if name != DEFAULT_COLOR and name in mesh.uv_layers:
+        uvs = compat.uvs(mesh, name)
+        return None if uvs is None else MeshAttribute(uvs, True)
+    if name == DEFAULT_COLOR:
+        index = mesh.color_attributes.render_color_index
+        attribute = mesh.color_attributes[index] if 0 <= index < len(mesh.color_attributes) else None
+    else:
+        attribute = mesh.attributes.get(name)
+    if attribute is None or attribute.data_type not in TYPES or attribute.domain not in {"POINT", "CORNER", "FACE"}:
+        return None
+    values = compat.attribute_values(attribute, *TYPES[attribute.data_type])
+    if attribute.domain == "FACE":
+        values = values.take(compat.corner_faces(mesh), axis=0)
+    return MeshAttribute(np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0), attribute.domain != "POINT")
+
+
+def generated(mesh: Any, positions: np.ndarray) -> tuple[tuple[float, ...], np.ndarray | None]:
+    """The map from object space to Generated coordinates, and these for each vertex where modifiers have moved them."""
+    location, size = np.array(mesh.texspace_location), np.array(mesh.texspace_size)
+    scale = np.divide(0.5, size, out=size.copy(), where=size != 0)
+    offset = 0.5 - location * scale
+    matrix = np.column_stack([np.diag(scale), offset])
+    undeformed = compat.undeformed_positions(mesh)
+    if np.allclose(undeformed, positions, rtol=0, atol=1e-6 * max(1e-30, float(np.abs(size).max()))):
+        return tuple(matrix.reshape(-1).tolist()), None
+    return tuple(matrix.reshape(-1).tolist()), (undeformed * scale + offset).astype(np.float32)
+
+
+def object_attributes(names: Iterable[str], owners: dict[str, Any]) -> tuple[tuple[str, tuple[float, ...]], ...]:
+    """Of these names those that `owners`, by how they begin, have: custom properties of the object or its data, or their own."""
+    found = []
+    for name in sorted(names):
+        prefix = next((p for p in OF_OBJECT if name.startswith(p)), None)
+        if prefix is None:
+            continue
+        for owner in owners[prefix]:
+            values = _property(owner, name[len(prefix) :])
+            if values is not None:
+                found.append((name, values))
+                break
+    return tuple(found)
+
+
+def _property(owner: Any, name: str) -> tuple[float, ...] | None:
+    """Of one number or up to four."""
+    try:
+        value = owner[name] if name in owner else owner.path_resolve(name)
+    except (AttributeError, TypeError, ValueError, KeyError):
+        return None
+    try:
+        numbers = [float(v) for v in (value if hasattr(value, "__len__") else [value])]
+    except (TypeError, ValueError):
+        return None
+    return tuple(numbers) if 1 <= len(numbers) <= 4 and np.isfinite(numbers).all() else None
 
 
 def mean_color(name: str) -> np.ndarray | None:

@@ -17,6 +17,7 @@ from .model import (
     IDENTITY_TRANSFORM,
     VISIBILITY,
     CameraData,
+    ClosureData,
     ColorInput,
     ImageData,
     InstanceData,
@@ -198,7 +199,11 @@ class _Encoder:
         return samplers, textures
 
     def _material(self, material: MaterialData) -> dict[str, Any]:
-        extension: dict[str, Any] = {"variant": material.variant}
+        extension: dict[str, Any] = {}
+        if material.closures:
+            extension["closures"] = [_closure(closure) for closure in material.closures]
+        else:
+            extension["variant"] = material.variant
         for key, value in (
             ("diffuse", material.diffuse),
             ("specular", material.specular),
@@ -212,6 +217,12 @@ class _Encoder:
                 "alphaY": _input(material.alpha_y),
                 "rotation": material.rotation,
             }
+        if material.normal is not None:
+            extension["normal"] = {"result": material.normal.result}
+        if material.program is not None:
+            extension["program"] = {"operations": material.program.operations}
+            if material.index and material.program.reads("material-index"):
+                extension["index"] = material.index
         return {
             "name": material.name,
             **self._core_material(material),
@@ -253,41 +264,58 @@ class _Encoder:
             attributes["NORMAL"] = self._accessor(mesh.normals)
         if mesh.uvs is not None:
             attributes["TEXCOORD_0"] = self._accessor(mesh.uvs, "UV")
+        names = [name for name, uvs in mesh.uv_sets.items() if uvs is mesh.uvs]
+        names = names or ([""] if mesh.uvs is not None else [])
+        for name, uvs in mesh.uv_sets.items():
+            if uvs is not mesh.uvs:
+                attributes[f"TEXCOORD_{len(names)}"] = self._accessor(uvs, "UV")
+                names.append(name)
+        attributes |= {f"_{name}": self._accessor(values) for name, values in mesh.attributes.items()}
+        for name, values in mesh.tangents.items():
+            attributes[f"_TANGENT_{name}" if name else "TANGENT"] = self._accessor(values)
+        sets = {"extensions": {EXTENSION: {"uvSets": names}}} if any(names) else {}
         primitives = [
-            {"attributes": attributes, "indices": self._accessor(p.triangles, "INDICES"), "material": p.material}
+            {
+                "attributes": attributes,
+                "indices": self._accessor(p.triangles, "INDICES"),
+                "material": p.material,
+                **sets,
+            }
             for p in mesh.primitives
         ]
         return {"name": mesh.name, "primitives": primitives}
 
     def _instances(self, instances: list[InstanceData], meshes: list[MeshData]) -> list[int]:
         """A node for each instance; those of one mesh that can be said as translation, rotation and scale share a node."""
-        groups: dict[tuple[int, frozenset[str]], list[InstanceData]] = {}
+        groups: dict[tuple[Any, ...], list[InstanceData]] = {}
         for instance in instances:
-            groups.setdefault((instance.mesh, instance.hidden_from), []).append(instance)
+            key = (instance.mesh, instance.hidden_from, instance.color, instance.index, instance.random)
+            groups.setdefault((*key, instance.attributes), []).append(instance)
         nodes = []
-        for (mesh, _), members in groups.items():
+        for (mesh, *_), members in groups.items():
             alone = members
+            extension = _node_extension(members[0], meshes[mesh])
             if len(members) > 1:
                 matrices = np.array([m.matrix for m in members])
                 translation, rotation, scale, exact = decompose(matrices)
                 alone = [member for member, ok in zip(members, exact) if not ok]
                 if exact.sum() > 1:
                     parts = {"TRANSLATION": translation[exact], "ROTATION": rotation[exact], "SCALE": scale[exact]}
-                    nodes.append(self._instancing_node(mesh, meshes[mesh].name, members[0].hidden_from, parts))
+                    nodes.append(self._instancing_node(mesh, meshes[mesh].name, extension, parts))
                 else:
                     alone = members
             for member in alone:
                 node = {"name": member.name, "mesh": mesh, "matrix": _column_major(member.matrix)}
-                nodes.append(self._node(node, _visibility(member.hidden_from)))
+                nodes.append(self._node(node, extension))
         return nodes
 
-    def _instancing_node(self, mesh: int, name: str, hidden: frozenset[str], parts: dict[str, np.ndarray]) -> int:
+    def _instancing_node(self, mesh: int, name: str, extension: dict[str, Any], parts: dict[str, np.ndarray]) -> int:
         self.used.add(INSTANCING)
         self.required.add(INSTANCING)
         attributes = {
             key: self._accessor(np.ascontiguousarray(value, np.float32), "INSTANCES") for key, value in parts.items()
         }
-        return self._node({"name": name, "mesh": mesh}, _visibility(hidden), {INSTANCING: {"attributes": attributes}})
+        return self._node({"name": name, "mesh": mesh}, extension, {INSTANCING: {"attributes": attributes}})
 
     def _node(
         self, node: dict[str, Any], extension: dict[str, Any] | None = None, others: dict[str, Any] | None = None
@@ -365,6 +393,21 @@ def _visibility(hidden: frozenset[str]) -> dict[str, Any]:
     return {"visibility": [kind for kind in VISIBILITY if kind not in hidden]} if hidden else {}
 
 
+def _node_extension(instance: InstanceData, mesh: MeshData) -> dict[str, Any]:
+    result = _visibility(instance.hidden_from)
+    if mesh.generated is not None:
+        result["generated"] = list(mesh.generated)
+    if instance.color != (1.0, 1.0, 1.0, 1.0):
+        result["color"] = list(instance.color)
+    if instance.index:
+        result["index"] = instance.index
+    if instance.random:
+        result["random"] = instance.random
+    if instance.attributes:
+        result["attributes"] = {name: list(values) for name, values in instance.attributes}
+    return result
+
+
 def _texture_use(use: TextureUse, scalar: bool) -> dict[str, Any]:
     result: dict[str, Any] = {"index": use.index}
     if scalar:
@@ -374,11 +417,24 @@ def _texture_use(use: TextureUse, scalar: bool) -> dict[str, Any]:
     return result
 
 
+def _closure(closure: ClosureData) -> dict[str, Any]:
+    result: dict[str, Any] = {"type": closure.type, **closure.parameters}
+    if closure.weight is not None:
+        result["weight"] = _input(closure.weight)
+    result |= {name: _input(value) for name, value in closure.inputs.items()}
+    for name, normal in (("normal", closure.normal), ("coatNormal", closure.coat_normal)):
+        if normal is not None:
+            result[name] = {"result": normal.result}
+    return result
+
+
 def _input(value: ColorInput | ScalarInput) -> dict[str, Any]:
     scalar = isinstance(value, ScalarInput)
     result: dict[str, Any] = {"value": value.value if isinstance(value, ScalarInput) else list(value.value)}
     if value.texture is not None:
         result["texture"] = _texture_use(value.texture, scalar)
+    if value.result is not None:
+        result["result"] = value.result
     return result
 
 

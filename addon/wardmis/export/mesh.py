@@ -6,14 +6,16 @@ All flat: positions alone. All smooth, no UVs: positions and normals per vertex.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from .. import compat
+from .attribute import generated, read_attribute
 from .context import ExportContext, ExportError
-from .model import MeshData, PrimitiveData
+from .model import MaterialData, MeshData, PrimitiveData
 
 
 @dataclass
@@ -25,9 +27,34 @@ class Geometry:
     uvs: np.ndarray | None
     triangles: np.ndarray
     slots: np.ndarray | None
+    uv_sets: dict[str, np.ndarray] = field(default_factory=dict)
+    attributes: dict[str, np.ndarray] = field(default_factory=dict)
+    tangents: dict[str, np.ndarray] = field(default_factory=dict)
+    generated: tuple[float, ...] | None = None
 
 
-def gather_geometry(mesh: Any, with_uvs: bool, context: ExportContext) -> Geometry | None:
+@dataclass(frozen=True)
+class Wanted:
+    """What materials read of a mesh besides its shape."""
+
+    uv_sets: frozenset[str] = frozenset()  # "": the one that is active for rendering
+    attributes: frozenset[str] = frozenset()
+    tangents: frozenset[str] = frozenset()  # UV sets
+    generated: bool = False
+
+
+def wanted_of(materials: Iterable[MaterialData]) -> Wanted:
+    materials = list(materials)
+    programs = [m.program for m in materials if m.program is not None]
+    return Wanted(
+        frozenset().union(*(m.uv_sets for m in materials)),
+        frozenset().union(*(p.attributes for p in programs)),
+        frozenset().union(*(p.tangents for p in programs)),
+        any(p.reads("generated", "tangent") for p in programs),
+    )
+
+
+def gather_geometry(mesh: Any, wanted: Wanted, context: ExportContext) -> Geometry | None:
     """None for a mesh without faces."""
     if not mesh.polygons:
         return None
@@ -43,12 +70,16 @@ def gather_geometry(mesh: Any, with_uvs: bool, context: ExportContext) -> Geomet
     context.check_cancelled()
     slots = _triangle_slots(mesh)
     shading = compat.shading(mesh)
-    uvs = compat.uvs(mesh) if with_uvs else None
+    uv_sets = {name: uvs for name in sorted(wanted.uv_sets) if (uvs := compat.uvs(mesh, name)) is not None}
+    attributes = {
+        name: found for name in sorted(wanted.attributes) if (found := read_attribute(mesh, name)) is not None
+    }
+    by_corner = bool(uv_sets) or any(a.by_corner for a in attributes.values())
     vertex_of_corner = compat.corner_vertices(mesh)
     context.check_cancelled()
-    if shading == "CORNER" or uvs is not None:
+    if shading == "CORNER" or by_corner:
         # take() is three times as fast as an index in brackets
-        geometry = Geometry(positions.take(vertex_of_corner, axis=0), None, uvs, corners, slots)
+        geometry = Geometry(positions.take(vertex_of_corner, axis=0), None, uv_sets.get(""), corners, slots)
         context.check_cancelled()
         if shading == "CORNER":
             geometry.normals = compat.corner_normals(mesh)
@@ -59,6 +90,16 @@ def gather_geometry(mesh: Any, with_uvs: bool, context: ExportContext) -> Geomet
         if shading == "POINT":
             geometry.normals = compat.vertex_normals(mesh)
     context.check_cancelled()
+    corner_of = vertex_of_corner if shading == "CORNER" or by_corner else None
+    geometry.uv_sets = {name: uvs for name, uvs in uv_sets.items() if name}
+    geometry.attributes = {
+        name: a.values if corner_of is None or a.by_corner else a.values.take(corner_of, axis=0)
+        for name, a in attributes.items()
+    }
+    if wanted.generated:
+        geometry.generated, undeformed = generated(mesh, positions)
+        if undeformed is not None:
+            geometry.attributes["GENERATED"] = undeformed if corner_of is None else undeformed.take(corner_of, axis=0)
     _check_directions(geometry, mesh, context)
     return geometry
 
@@ -87,10 +128,20 @@ def assemble(name: str, geometry: Geometry, materials: tuple[int, ...]) -> MeshD
         slots = np.clip(geometry.slots, 0, len(materials) - 1)
         used = np.flatnonzero(np.bincount(slots))
         primitives = [PrimitiveData(materials[slot], geometry.triangles[slots == slot]) for slot in used]
-    return MeshData(name, geometry.positions, geometry.normals, geometry.uvs, primitives)
+    return MeshData(
+        name,
+        geometry.positions,
+        geometry.normals,
+        geometry.uvs,
+        primitives,
+        geometry.uv_sets,
+        geometry.attributes,
+        geometry.tangents,
+        geometry.generated,
+    )
 
 
 def transformed(mesh: MeshData, linear: np.ndarray) -> MeshData:
     """The mesh in the shape that a 3x3 matrix without an inverse gives it: a flat one, with the normals of its faces."""
     positions = (mesh.positions.astype(np.float64) @ linear.T).astype(np.float32)
-    return MeshData(mesh.name, positions, None, mesh.uvs, mesh.primitives)
+    return replace(mesh, positions=positions, normals=None)

@@ -21,7 +21,10 @@ def not_finite(data: Any) -> str | None:
     """Of one of the dataclasses here: what holds a NaN, or a number too large for the renderer, in words; None if nothing does."""
     for entry in fields(data):
         value = getattr(data, entry.name)
-        if is_dataclass(value):
+        if isinstance(value, (list, dict)):
+            parts = value.values() if isinstance(value, dict) else value
+            wrong = any(not_finite(part) is not None for part in parts if is_dataclass(part))
+        elif is_dataclass(value):
             wrong = not_finite(value) is not None
         else:
             wrong = isinstance(value, (float, tuple, np.ndarray)) and not (np.abs(value) <= LARGEST).all()
@@ -63,22 +66,63 @@ class TextureUse:
 
 @dataclass
 class ColorInput:
-    """`value`, multiplied by the texture if there is one."""
+    """`value`, multiplied by the texture, or by value `result` of the material's program, if there is one."""
 
     value: Rgb = (0.0, 0.0, 0.0)
     texture: TextureUse | None = None
+    result: int | None = None
 
 
 @dataclass
 class ScalarInput:
-    """`value`, multiplied by one channel of the texture if there is one."""
+    """`value`, multiplied by one channel of the texture, or by value `result` of the material's program, if there is one."""
 
     value: float = 0.1
     texture: TextureUse | None = None
+    result: int | None = None
+
+
+@dataclass
+class ProgramData:
+    """Operations as docs/scene-format.md, "Programs", has them: op, in, and parameters by name."""
+
+    operations: list[dict[str, Any]]
+
+    @property
+    def uv_sets(self) -> set[str]:
+        """The UV sets that it reads, the one without a name being "". Tangents are made of them."""
+        names = {"uv", "tangent-uv", "normal-map-tangent"}
+        return {o.get("set", "") for o in self.operations if o["op"] in names}
+
+    @property
+    def tangents(self) -> set[str]:
+        """The UV sets whose tangents at vertices it needs."""
+        return {o.get("set", "") for o in self.operations if o["op"] in {"tangent-uv", "normal-map-tangent"}}
+
+    @property
+    def attributes(self) -> set[str]:
+        return {o["name"] for o in self.operations if o["op"].startswith("attribute")}
+
+    def reads(self, *names: str) -> bool:
+        return any(o["op"] in names for o in self.operations)
+
+
+@dataclass
+class ClosureData:
+    """One lobe, or several, of a surface: docs/scene-format.md, "Closures"."""
+
+    type: str
+    weight: ColorInput | None  # None: 1
+    inputs: dict[str, Any]  # ColorInput, ScalarInput
+    parameters: dict[str, Any]
+    normal: ColorInput | None  # of a result alone
+    coat_normal: ColorInput | None
 
 
 @dataclass
 class MaterialData:
+    """In the short form, or, where there are `closures`, with these in place of variant ... rotation and normal."""
+
     name: str
     variant: str = "ward-gmd"  # "ward", "ward-dur", "ward-gmd"
     diffuse: ColorInput = field(default_factory=ColorInput)
@@ -87,14 +131,27 @@ class MaterialData:
     alpha_y: ScalarInput = field(default_factory=ScalarInput)
     rotation: float = 0.0  # radians
     emission: ColorInput = field(default_factory=ColorInput)  # W m^-2 sr^-1, both sides
+    normal: ColorInput | None = None  # of a result alone
+    closures: list[ClosureData] = field(default_factory=list)
+    program: ProgramData | None = None
+    index: int = 0
 
     @property
-    def needs_uv(self) -> bool:
-        """Whether a mesh with this material must carry UVs: for a texture, or for the direction of the anisotropy."""
-        inputs = (self.diffuse, self.specular, self.emission, self.alpha_x, self.alpha_y)
-        shiny = any(self.specular.value)
-        anisotropic = shiny and (self.alpha_x != self.alpha_y)
-        return anisotropic or any(i.texture is not None for i in inputs)
+    def uv_sets(self) -> set[str]:
+        """The UV sets that a mesh with this material must carry: for textures, programs, or the direction of the anisotropy."""
+        inputs: list[ColorInput | ScalarInput] = [
+            self.diffuse,
+            self.specular,
+            self.emission,
+            self.alpha_x,
+            self.alpha_y,
+        ]
+        anisotropic = any(self.specular.value) and self.alpha_x != self.alpha_y
+        for closure in self.closures:
+            anisotropic |= "rotation" in closure.inputs
+            inputs += [*closure.inputs.values(), *([closure.weight] if closure.weight else [])]
+        own = {""} if anisotropic or any(i.texture is not None for i in inputs) else set()
+        return own | (self.program.uv_sets if self.program else set())
 
 
 @dataclass
@@ -112,8 +169,12 @@ class MeshData:
     name: str
     positions: np.ndarray  # (n, 3) float32
     normals: np.ndarray | None  # (n, 3) float32
-    uvs: np.ndarray | None  # (n, 2) float32, v = 0 at the bottom
+    uvs: np.ndarray | None  # (n, 2) float32, v = 0 at the bottom: the set without a name
     primitives: list[PrimitiveData]
+    uv_sets: dict[str, np.ndarray] = field(default_factory=dict)  # those that programs read by name
+    attributes: dict[str, np.ndarray] = field(default_factory=dict)  # (n,) or (n, 2 to 4) float32, by name
+    tangents: dict[str, np.ndarray] = field(default_factory=dict)  # (n, 4) float32, by UV set
+    generated: tuple[float, ...] | None = None  # 12 numbers, from object space to Generated coordinates
 
 
 @dataclass
@@ -122,6 +183,10 @@ class InstanceData:
     mesh: int  # index into SceneData.meshes
     matrix: np.ndarray  # (4, 4) float64
     hidden_from: frozenset[str] = frozenset()  # out of VISIBILITY
+    color: tuple[float, float, float, float] = (1.0, 1.0, 1.0, 1.0)
+    index: int = 0
+    random: float = 0.0
+    attributes: tuple[tuple[str, tuple[float, ...]], ...] = ()  # of the object, not the mesh
 
 
 VISIBILITY = ("camera", "diffuse", "glossy", "shadow")

@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 
 from .. import compat
+from .attribute import OF_OBJECT, object_attributes
 from .camera import export_camera, export_film
 from .context import ExportContext, ExportError
 from .image import export_image
 from .light import export_light
 from .material import export_material
-from .mesh import Geometry, assemble, gather_geometry, transformed
+from .mesh import Geometry, Wanted, assemble, gather_geometry, transformed, wanted_of
 from .model import VISIBILITY, ColorInput, InstanceData, MaterialData, ScalarInput, SceneData
 from .world import export_worlds
 
@@ -33,6 +34,33 @@ SMALLEST_DETERMINANT = 1e-37
 # of a flattened shape's width to its length, from which on single precision can tell it from a line
 SMALLEST_STRETCH = 1e-7
 INVISIBLE = {"EMPTY", "CAMERA", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE"}
+
+
+def random_of(instance: int | None, name: str) -> float:
+    """Object Info's Random: of an instance's number, else of a hash of the object's name, as Cycles makes it."""
+    if instance is None:
+        number = 0
+        for byte in name.encode():
+            number = (number * 37 + byte) & 0xFFFFFFFF
+        instance = _hash(number, 0)
+    return (instance & 0xFFFFFFFF) / 0xFFFFFFFF
+
+
+def _hash(x: int, y: int) -> int:
+    """Jenkins' of two words."""
+    a = b = c = (0xDEADBEEF + (2 << 2) + 13) & 0xFFFFFFFF
+    a, b = (a + x) & 0xFFFFFFFF, (b + y) & 0xFFFFFFFF
+
+    def turned(v: int, bits: int) -> int:
+        return ((v << bits) | (v >> (32 - bits))) & 0xFFFFFFFF
+
+    c = ((c ^ b) - turned(b, 14)) & 0xFFFFFFFF
+    a = ((a ^ c) - turned(c, 11)) & 0xFFFFFFFF
+    b = ((b ^ a) - turned(a, 25)) & 0xFFFFFFFF
+    c = ((c ^ b) - turned(b, 16)) & 0xFFFFFFFF
+    a = ((a ^ c) - turned(c, 4)) & 0xFFFFFFFF
+    b = ((b ^ a) - turned(a, 14)) & 0xFFFFFFFF
+    return ((c ^ b) - turned(b, 24)) & 0xFFFFFFFF
 
 
 def gather_scene(
@@ -89,6 +117,7 @@ class _Gatherer:
     def __init__(self, depsgraph: Any, context: ExportContext) -> None:
         self.context = context
         self.view_layer = depsgraph.view_layer
+        self.scene = depsgraph.scene
         self.override = depsgraph.view_layer_eval.material_override
         self.materials: list[MaterialData] = []
         self.meshes: list[Any] = []
@@ -96,7 +125,7 @@ class _Gatherer:
         self.lights: list[Any] = []
         self._material_index: dict[str | None, int] = {}
         self._mesh_index: dict[tuple[int, tuple[int, ...]], int | None] = {}
-        self._geometry: dict[tuple[int, bool], Geometry | None] = {}
+        self._geometry: dict[tuple[int, Wanted], Geometry | None] = {}
         self._hidden: dict[int, frozenset[str]] = {}
         self._noted_hair: set[str] = set()
 
@@ -171,7 +200,28 @@ class _Gatherer:
             self._note_compositing(obj.original)
             hidden = self._hidden_from(obj, instance)
             if len(hidden) < len(VISIBILITY):
-                self.instances.append(InstanceData(obj.name, index, self._matrix(instance), hidden))
+                data = InstanceData(obj.name, index, self._matrix(instance), hidden)
+                self._describe(data, obj, instance, materials)
+                self.instances.append(data)
+
+    def _describe(self, data: InstanceData, obj: Any, instance: Any, materials: tuple[int, ...]) -> None:
+        """What programs read of the object."""
+        for program in (self.materials[m].program for m in set(materials)):
+            if program is None:
+                continue
+            if program.reads("object-color", "object-alpha"):
+                r, g, b, a = obj.color
+                data.color = (r, g, b, a)
+            if program.reads("object-index"):
+                data.index = obj.pass_index
+            if program.reads("object-random"):
+                data.random = random_of(instance.random_id if instance.is_instance else None, obj.name)
+            if any(name.startswith(OF_OBJECT) for name in program.attributes):
+                instancer = instance.parent if instance.is_instance and instance.parent is not None else obj
+                scene = (self.view_layer, self.scene, self.scene.world)
+                owners = {"object:": (obj, obj.data), "instancer:": (instancer, instancer.data), "layer:": scene}
+                named = object_attributes(program.attributes, owners)
+                data.attributes = tuple(sorted({*data.attributes, *named}))
 
     def _add_mesh(self, instance: Any, materials: tuple[int, ...]) -> int | None:
         mesh = instance.object.data
@@ -180,11 +230,11 @@ class _Gatherer:
                 f"object '{self.context.owner}': smoke and fire are not supported; their domain is left out"
             )
             return None
-        with_uvs = any(self.materials[m].needs_uv for m in materials)
-        key = (mesh.as_pointer(), with_uvs)
+        wanted = wanted_of(self.materials[m] for m in materials)
+        key = (mesh.as_pointer(), wanted)
         if key not in self._geometry:
             with compat.whole_mesh(instance) as whole:
-                self._geometry[key] = gather_geometry(whole, with_uvs, self.context)
+                self._geometry[key] = gather_geometry(whole, wanted, self.context)
         geometry = self._geometry[key]
         if geometry is None:
             return None

@@ -333,8 +333,8 @@ def fallbacks():
     )
 
 
-@scene(within=0.02, why="its colours' mean instead of the squares")
-def checker_mean():
+@scene
+def fine_checker():
     row(neutral("TexChecker", "Color", Color1=(0.8, 0.2, 0.2, 1), Color2=(0.2, 0.3, 0.8, 1), Scale=997.0))
 
 

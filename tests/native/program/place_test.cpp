@@ -125,7 +125,7 @@ TEST(Place, AttributesByTheirComponents) {
   expect(3, {1, 2, 6}, 3, 1);
   expect(2, {1, 2, 0}, 1, 1);
   expect(1, {1, 1, 1}, 1, 1);
-  expect(0, {0, 0, 0}, 0, 0);
+  expect(0, {0, 0, 0}, 0, 1);
   a.components = 4;
   const json shifted{{"name", "Col"}, {"shift", "x"}, {"width", 2}};
   expectNear(op("attribute", json::array(), shifted), {3, 4, 8}, c);

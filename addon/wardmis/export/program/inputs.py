@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Nodes that tell where the program runs: of the surface, the object, the camera, the path."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ... import compat
+from ..attribute import DEFAULT_COLOR
+from ..read import own_value
+from ..tree import NodeUse
+from .builder import Value, constant
+from .reader import Reader, kind_of_socket
+
+
+def _own(use: NodeUse, output: Any, p: Reader) -> Value:
+    return constant(own_value(use, output).factor, kind_of_socket(output.type))
+
+
+SHIFTED = {"position", "uv", "generated", "object", "camera", "window", "parametric"}
+
+
+def _by_output(names: dict[str, str]) -> Any:
+    """Output -> operation."""
+
+    def read(_use: NodeUse, output: Any, p: Reader) -> Value | None:
+        name = names.get(output.name)
+        return None if name is None else p.place(name) if name in SHIFTED else p(name)
+
+    return read
+
+
+def _coordinates(use: NodeUse, output: Any, p: Reader) -> Value | None:
+    if use.node.from_instancer and output.name in {"Generated", "UV"}:
+        use.note(f"takes its {output.name} from the instancer, which is not supported; the object's own is used")
+    if output.name == "Object" and use.node.object is not None:
+        return p.mapped(p.place("position"), [use.node.object.matrix_world.inverted_safe()])
+    return _by_output(COORDINATES)(use, output, p)  # type: ignore[no-any-return]
+
+
+COORDINATES = {
+    "Generated": "generated",
+    "Normal": "object-normal",
+    "UV": "uv",
+    "Object": "object",
+    "Camera": "camera",
+    "Window": "window",
+    "Reflection": "reflection",
+}
+
+
+def _uv_map(use: NodeUse, _output: Any, p: Reader) -> Value:
+    if use.node.from_instancer:
+        use.note("takes its UVs from the instancer, which is not supported; the object's own are used")
+    return p.place("uv", **_set(use.node.uv_map))
+
+
+def _set(name: str) -> dict[str, str]:
+    return {"set": name} if name else {}
+
+
+def _tangent(use: NodeUse, _output: Any, p: Reader) -> Value:
+    if use.node.direction_type == "UV_MAP":
+        return p("tangent-uv", **_set(use.node.uv_map))
+    return p("tangent", axis=use.node.axis.lower())
+
+
+# where attributes of other things than geometry are kept, on the node of the object
+ATTRIBUTE_PREFIX = {"GEOMETRY": "", "OBJECT": "object:", "INSTANCER": "instancer:", "VIEW_LAYER": "layer:"}
+
+
+def _attribute(use: NodeUse, output: Any, p: Reader) -> Value:
+    name = ATTRIBUTE_PREFIX[use.node.attribute_type] + use.node.attribute_name
+    return _attribute_output(name, output, p)
+
+
+def _vertex_color(use: NodeUse, output: Any, p: Reader) -> Value:
+    return _attribute_output(use.node.layer_name or DEFAULT_COLOR, output, p)
+
+
+def _attribute_output(name: str, output: Any, p: Reader) -> Value:
+    if output.name == "Alpha":
+        return p.place("attribute-alpha", name=name)
+    return p.place("attribute-number" if output.type == "VALUE" else "attribute", name=name)
+
+
+def _geometry(use: NodeUse, output: Any, p: Reader) -> Value | None:
+    return _by_output(GEOMETRY)(use, output, p)  # type: ignore[no-any-return]
+
+
+GEOMETRY = {
+    "Position": "position",
+    "Normal": "normal",
+    "Tangent": "tangent",
+    "True Normal": "true-normal",
+    "Incoming": "incoming",
+    "Parametric": "parametric",
+    "Backfacing": "backfacing",
+}
+OBJECT = {
+    "Location": "object-location",
+    "Color": "object-color",
+    "Alpha": "object-alpha",
+    "Object Index": "object-index",
+    "Material Index": "material-index",
+    "Random": "object-random",
+}
+LIGHT_PATH = {
+    "Is Camera Ray": "is-camera-ray",
+    "Is Shadow Ray": "is-shadow-ray",
+    "Is Diffuse Ray": "is-diffuse-ray",
+    "Is Glossy Ray": "is-glossy-ray",
+    "Is Singular Ray": "is-singular-ray",
+    "Is Reflection Ray": "is-reflection-ray",
+    "Is Transmission Ray": "is-transmission-ray",
+    "Ray Length": "ray-length",
+    "Ray Depth": "ray-depth",
+    "Diffuse Depth": "diffuse-depth",
+    "Glossy Depth": "glossy-depth",
+    "Transparent Depth": "transparent-depth",
+    "Transmission Depth": "transmission-depth",
+}
+CAMERA = {"View Vector": "view-vector", "View Z Depth": "view-depth", "View Distance": "view-distance"}
+
+
+def normal(use: NodeUse, p: Reader, name: str = "Normal") -> Value:
+    """The shading normal where nothing is linked."""
+    return p.read(use, name, lambda: p("normal"))
+
+
+def _fresnel(use: NodeUse, _output: Any, p: Reader) -> Value:
+    return p("fresnel", p.read(use, "IOR"), normal(use, p))
+
+
+def _layer_weight(use: NodeUse, output: Any, p: Reader) -> Value:
+    return p(f"layer-weight-{output.name.lower()}", p.read(use, "Blend"), normal(use, p))
+
+
+def _light_falloff(use: NodeUse, output: Any, p: Reader) -> Value:
+    strength, smooth = p.read(use, "Strength"), p.read(use, "Smooth")
+    return p(f"light-falloff-{output.name.lower()}", strength, smooth, version=compat.CYCLES)
+
+
+def _bevel(use: NodeUse, _output: Any, p: Reader) -> Value:
+    use.note("is not supported; the surface's own normal is used instead")
+    return normal(use, p)
+
+
+def _ambient_occlusion(use: NodeUse, output: Any, p: Reader) -> Value:
+    use.note("is not supported as a colour or number; what is not occluded is used instead")
+    return p.read(use, "Color") if output.name == "Color" else 1.0
+
+
+NODES = {
+    "RGB": _own,
+    "Value": _own,
+    "TexCoord": _coordinates,
+    "UVMap": _uv_map,
+    "Tangent": _tangent,
+    "Attribute": _attribute,
+    "VertexColor": _vertex_color,
+    "NewGeometry": _geometry,
+    "ObjectInfo": _by_output(OBJECT),
+    "LightPath": _by_output(LIGHT_PATH),
+    "CameraData": _by_output(CAMERA),
+    "Fresnel": _fresnel,
+    "LayerWeight": _layer_weight,
+    "LightFalloff": _light_falloff,
+    "Bevel": _bevel,
+    "AmbientOcclusion": _ambient_occlusion,
+}

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What an input socket receives, as a value of a program."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import pairwise
+from typing import Any
+
+from mathutils import Matrix
+
+from ... import compat
+from ..neutral import NEUTRAL
+from ..read import own_value
+from ..tree import NodeUse, Source
+from .builder import Builder, Result, Value, constant, is_constant, kind_of
+
+NUMBERS = {"VALUE", "INT", "BOOLEAN"}
+
+
+def kind_of_socket(kind: str) -> str:
+    return "number" if kind in NUMBERS else "vector"
+
+
+class Reader(Builder):
+    """Reads node trees of one owner into one program. `shift`: where Bump nodes want their height ("none", "x", "y"), and its width."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.shift: tuple[str, float] = ("none", 1.0)
+        self._outputs: dict[tuple[Any, ...], Value | None] = {}  # None: being read
+
+    def place(self, name: str, /, **parameters: Any) -> Value:
+        """An operation that tells where the program runs."""
+        direction, width = self.shift
+        return (
+            self(name, **parameters) if direction == "none" else self(name, shift=direction, width=width, **parameters)
+        )
+
+    def read(self, use: NodeUse, key: str | int, implicit: Callable[[], Value] | None = None) -> Value:
+        """`implicit`: what Cycles links to it where nothing is."""
+        source = use.source(key)
+        if (
+            implicit is not None
+            and source.use is None
+            and (compat.NODE_TREES_ARE_INLINED or source.socket == use.node.inputs[key])
+        ):
+            return implicit()
+        return self.converted(self._first(use, source, key), source.kinds)
+
+    def optional(self, use: NodeUse, name: str, default: float = 0.0) -> Value:
+        """A number that only some settings or versions of the node have."""
+        return self.read(use, name) if use.has(name) and use.node.inputs[name].enabled else default
+
+    def inputs(self, use: NodeUse) -> list[Value]:
+        """Of the inputs in use: of each name some nodes have one socket per data type, all but one disabled."""
+        return [self.read(use, i) for i, socket in enumerate(use.node.inputs) if socket.enabled]
+
+    def linked(self, use: NodeUse, name: str) -> Value | None:
+        """Of an input that is nothing unless it is linked, as of normals."""
+        return self.read(use, name) if use.is_linked(name) else None
+
+    def number(self, use: NodeUse, name: str) -> float:
+        """Of an input where only a constant will do."""
+        value = self.read(use, name)
+        if is_constant(value):
+            return float(value)  # type: ignore[arg-type]
+        use.note(f"needs a constant as its '{name}'; the input's own is used instead")
+        return float(own_value(use, use.node.inputs[name]).factor[0])
+
+    def mapped(self, vector: Value, matrices: list[Matrix]) -> Value:
+        """By maps one after the other, the last one first; between two of them the vector is made a unit one."""
+        for i, matrix in enumerate(reversed(matrices)):
+            if i > 0:
+                vector = self("vector-normalize", vector)
+            if matrix != Matrix.Identity(4):
+                vector = self._moved(vector, matrix)
+        return vector
+
+    def _moved(self, vector: Value, matrix: Matrix) -> Value:
+        """By one map, which takes one before it in."""
+        if isinstance(vector, Result) and self.operations[vector.index].name == "mapping":
+            operation = self.operations[vector.index]
+            rows = dict(operation.parameters)["matrix"]
+            before = Matrix((rows[0:4], rows[4:8], rows[8:12], (0.0, 0.0, 0.0, 1.0)))
+            return self._moved(operation.arguments[0], matrix @ before)
+        return self("mapping", vector, matrix=tuple(float(x) for row in matrix[:3] for x in row))
+
+    def converted(self, value: Value, kinds: tuple[str, ...]) -> Value:
+        """Blender's implicit conversions of a value of the first kind of socket to the others in turn."""
+        for before, after in pairwise(kinds):
+            if after in NUMBERS and kind_of(value) == "vector":
+                value = self("luminance" if before == "RGBA" else "mean", value)
+            elif after not in NUMBERS:
+                value = self.vector(value)
+            if after == "INT" and before != "INT":
+                value = self("truncate", value)
+        return value
+
+    def _first(self, use: NodeUse, source: Source, key: str | int) -> Value:
+        kind = kind_of_socket(source.kinds[0])
+        if source.socket is None:
+            return constant(0.0, kind)
+        if source.use is None:
+            return constant(own_value(use, source.socket).factor, kind)
+        return self._given(source.use, source.socket, use, key)
+
+    def _given(self, origin: NodeUse, output: Any, use: NodeUse, key: str | int) -> Value:
+        place = (origin.node.as_pointer(), *(g.as_pointer() for g in origin.groups), output.identifier, self.shift)
+        if place in self._outputs:
+            known = self._outputs[place]
+            if known is None:
+                raise RecursionError
+            return known
+        self._outputs[place] = None
+        value = self._of_node(origin, output)
+        if value is None:  # nothing can be said about it: the value of the input that it feeds
+            value = constant(own_value(use, use.node.inputs[key]).factor, "vector")
+        kind = kind_of_socket(output.type)
+        value = self.vector(value) if kind == "vector" else self("x", value) if kind_of(value) == "vector" else value
+        self._outputs[place] = value
+        return value
+
+    def _of_node(self, use: NodeUse, output: Any) -> Value | None:
+        from .nodes import NODES  # late: nodes are read by this class
+
+        kind = use.node.bl_idname
+        value = NODES[kind](use, output, self) if kind in NODES else None
+        if value is not None:
+            return value
+        if kind not in NEUTRAL:
+            use.note("is not supported as a colour or number; the constant of the input that it feeds is used instead")
+            return None
+        neutral, what = NEUTRAL[kind](use, output)
+        use.note(f"is not supported as a colour or number; {what} is used instead")
+        return constant(neutral.mean().factor, kind_of_socket(output.type))

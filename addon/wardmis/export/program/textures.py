@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Textures of images."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from ..image import MISSING, Picture
+from ..texture import picture
+from ..tree import NodeUse
+from .builder import Value
+from .patterns import coordinates
+from .reader import Reader
+
+# what is done to the colours before they are filtered, and whether they are divided by alpha after that
+ALPHA = {
+    "kept": ("kept", False),
+    "multiplied": ("multiplied", False),
+    "divided": ("kept", True),
+    "restored": ("multiplied", True),
+}
+
+
+def _image(use: NodeUse, output: Any, p: Reader) -> Value:
+    node = use.node
+    found = picture(use)
+    if found is None:
+        return _missing(output)
+    parameters = _texture(use, found, node.extension)
+    vector = coordinates(use, p, "uv")
+    alpha = "-alpha" if output.name == "Alpha" else ""
+    if node.projection == "BOX":
+        return p(f"image-box{alpha}", vector, p("object-normal"), blend=node.projection_blend, **parameters)
+    projection = {} if node.projection == "FLAT" else {"projection": node.projection.lower()}
+    return p(f"image{alpha}", vector, **projection, **parameters)
+
+
+def _environment(use: NodeUse, output: Any, p: Reader) -> Value:
+    found = picture(use)
+    if found is None:
+        return _missing(output)
+    projection = {} if use.node.projection == "EQUIRECTANGULAR" else {"projection": "mirror-ball"}
+    alpha = "-alpha" if output.name == "Alpha" else ""
+    parameters = _texture(use, found, "REPEAT")
+    return p(f"environment{alpha}", coordinates(use, p, "position"), **projection, **parameters)
+
+
+def _texture(use: NodeUse, found: Picture, extension: str) -> dict[str, Any]:
+    alpha, unassociate = ALPHA[found.alpha]
+    context = use.owner.context
+    shown = replace(found, alpha=alpha)
+    index = context.texture(shown, use.node.interpolation, extension)
+    return {"texture": index} | ({"unassociate": True} if unassociate else {})
+
+
+def _missing(output: Any) -> Value:
+    return 1.0 if output.name == "Alpha" else MISSING
+
+
+NODES = {"TexImage": _image, "TexEnvironment": _environment}
