@@ -210,8 +210,10 @@ int ProgramReader::use(const Json& result, ValueKind kind) {
     result.fail(
         fmt::format("expected {}, found {}: value {} is of operation '{}'", word(kind), word(op.result), k, op.name),
         kExportAgain);
-  roots_.push_back(static_cast<int>(k));
-  return static_cast<int>(roots_.size() - 1);
+  const auto found = std::ranges::find(roots_, static_cast<int>(k));  // inputs of one value are known to be the same
+  const auto root = static_cast<int>(found - roots_.begin());
+  if (found == roots_.end()) roots_.push_back(static_cast<int>(k));
+  return root;
 }
 
 std::shared_ptr<Program> ProgramReader::finish(const std::function<int(const Json&)>& texture) const {

@@ -174,6 +174,11 @@ TEST(Programs, KeepOnlyWhatInputsNeed) {
   const auto one = read(withProgram(operations, {{"diffuse", {{"result", 1}}}}).bytes());
   EXPECT_EQ(one.materials[0].program->textures, std::vector<uint32_t>{0});
   EXPECT_EQ(one.textures.size(), 1u);
+  // inputs of one value have one result, so that they are known to be the same
+  const auto shared =
+      read(withProgram({{{"op", "ray-length"}}}, {{"alphaX", {{"result", 0}}}, {"alphaY", {{"result", 0}}}}).bytes());
+  EXPECT_EQ(shared.materials[0].alphaX.result, shared.materials[0].alphaY.result);
+  EXPECT_EQ(shared.materials[0].program->results.size(), 1u);
   // an input that is black needs nothing
   const auto black = read(withProgram(operations, {{"diffuse", {{"value", {0, 0, 0}}, {"result", 1}}}}).bytes());
   EXPECT_EQ(black.materials[0].diffuse.result, -1);
