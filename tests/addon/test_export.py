@@ -352,6 +352,19 @@ class Instances(SceneTest):
             np.testing.assert_array_equal(instance.matrix, Matrix.Translation((x, 0, 2)))
         self.assertEqual(scene.notes, [])
 
+    def test_flattened_by_a_turned_parent(self):
+        """Rounding leaves such a matrix a determinant; what is thin, and what is small, keeps its inverse."""
+        parent = bpy.data.objects.new("Parent", None)
+        parent.scale, parent.rotation_euler = (1, 1, 0), (0.3, 0.2, 0.6)
+        self.scene.collection.objects.link(parent)
+        turned, thin, small = (self.add_quad(name) for name in ("Turned", "Thin", "Small"))
+        turned.parent, turned.rotation_euler = parent, (0.4, 0.5, 0.6)
+        thin.scale, thin.rotation_euler = (1, 1, 1e-4), (0.4, 0.5, 0.6)
+        small.scale = (1e-9, 1e-9, 1e-9)
+        scene = self.gather()
+        own_axes = {i.name: np.array_equal(i.matrix[:3, :3], np.eye(3)) for i in scene.instances}
+        self.assertEqual(own_axes, {"Turned": True, "Thin": False, "Small": False})
+
     def test_line_and_point_show_nothing(self):
         self.add_quad("Line").scale = (1, 0, 0)
         self.add_quad("Turned").scale, bpy.data.objects["Turned"].rotation_euler = (1, 0, 0), (0.3, 0.4, 0.5)

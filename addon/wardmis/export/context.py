@@ -43,6 +43,7 @@ class ExportContext:
         self.textures: list[TextureData] = []
         self.notes: list[str] = []
         self.owner = ""
+        self.foldings: dict[Any, Any] = {}  # by tree: what folding.py finds out about it
         self._export_image = export_image
         self._cancelled = cancelled
         self._next_check = 0.0

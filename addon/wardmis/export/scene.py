@@ -31,8 +31,9 @@ SEEN_AS_MESHES = {"CURVE", "SURFACE", "META", "FONT"}
 DRAWN_BY_BLENDER = {"GPENCIL", "GREASEPENCIL"}
 # of a transform that the renderer can invert in single precision
 SMALLEST_DETERMINANT = 1e-37
-# of a flattened shape's width to its length, from which on single precision can tell it from a line
-SMALLEST_STRETCH = 1e-7
+# of a shape's thickness to its length, and of its width: less is nothing, since a matrix of single precision, turned by those of
+# its parents, is that inexact
+SMALLEST_STRETCH = 1e-6
 INVISIBLE = {"EMPTY", "CAMERA", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE"}
 
 
@@ -103,6 +104,17 @@ def _note_scene_settings(scene: Any, context: ExportContext) -> None:
         context.note("motion blur is not supported; the frame is rendered at its own time")
 
 
+def _flat(axes: np.ndarray) -> np.ndarray:
+    """Which of (n, 3, 3) matrices have no inverse to render with."""
+    determinant = np.abs(np.linalg.det(axes))
+    # the product of the three stretches: where it is more, none can be so small; what that leaves are few
+    doubtful = determinant <= SMALLEST_STRETCH * np.linalg.norm(axes, axis=(1, 2)) ** 3
+    flat: np.ndarray = determinant < SMALLEST_DETERMINANT
+    stretch = np.linalg.svd(axes[doubtful], compute_uv=False)
+    flat[doubtful] |= stretch[:, 2] <= SMALLEST_STRETCH * stretch[:, 0]
+    return flat
+
+
 def _is_gas_domain(obj: Any) -> bool:
     """Whether a fluid simulation's smoke is what there is to see of the object, not its mesh."""
     domains = (
@@ -161,8 +173,8 @@ class _Gatherer:
         """
         if not self.instances:
             return
-        axes = np.array([instance.matrix[:3, :3] for instance in self.instances])
-        flat = np.abs(np.linalg.det(axes)) < SMALLEST_DETERMINANT
+        axes = np.array([instance.matrix[:3, :3] for instance in self.instances], float)
+        flat = _flat(axes)
         baked: dict[tuple[int, bytes], int] = {}
         kept = []
         for instance, linear, is_flat in zip(self.instances, axes, flat):

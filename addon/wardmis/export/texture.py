@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from mathutils import Euler, Matrix
 
+from .folding import Folding
 from .image import MISSING, Picture, picture_of
 from .lookup import IDENTITY, Lookup
 from .mapping import axes
@@ -54,8 +55,7 @@ def picture(use: NodeUse) -> Picture | None:
     if node.image is None:
         use.note(f"has no image; {instead} shown instead")
         return None
-    alpha = node.outputs.get("Alpha")
-    found = picture_of(node.image, alpha is not None and alpha.is_linked, node.image_user, use.owner.context.frame)
+    found = picture_of(node.image, _shows_alpha(use), node.image_user, use.owner.context.frame)
     reason = found.missing()
     if reason is not None:
         use.note(f"needs an image; {reason}; {instead} shown instead")
@@ -63,6 +63,17 @@ def picture(use: NodeUse) -> Picture | None:
     for deviation in found.deviations():
         use.note(f"shows {deviation}")
     return found
+
+
+def _shows_alpha(use: NodeUse) -> bool:
+    """Whether Cycles finds the node's Alpha used; of an environment it does not ask."""
+    if use.node.bl_idname != "ShaderNodeTexImage" or use.node.image.alpha_mode not in {"STRAIGHT", "PREMUL"}:
+        return False
+    tree = (use.groups[0] if use.groups else use.node).id_data
+    foldings, key = use.owner.context.foldings, (use.owner.place, tree.as_pointer())
+    if key not in foldings:
+        foldings[key] = Folding(use.owner, tree)
+    return bool(foldings[key].shows_alpha(use))
 
 
 def _missing(use: NodeUse) -> Value:

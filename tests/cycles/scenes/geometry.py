@@ -18,6 +18,7 @@ from stage import (
     image,
     mesh,
     painted,
+    place,
     scene,
     select,
     sheet,
@@ -278,3 +279,20 @@ def coarse():
     """Normals that are far from the facets' own."""
     stage()
     ball(location=(0, 0, 1), fineness=5)
+
+
+@scene
+def flattened():
+    """By a parent that is turned: the transform has, but for rounding, no inverse. One is all but flat, one in Edit Mode."""
+    stage()
+    steps = np.linspace(-1.2, 1.2, 9)
+    x, y = np.meshgrid(steps, steps)
+    hills = np.stack([x, y, 0.15 * np.sin(2 * x) * np.cos(3 * y)], axis=-1).reshape(-1, 3)
+    index = np.arange(x.size).reshape(x.shape)
+    faces = np.stack([index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1]], axis=-1).reshape(-1, 4)
+    for thickness, place_x, color in ((0, -1.6, (0.8, 0.2, 0.1)), (1e-9, 1.6, (0.2, 0.7, 0.2))):
+        parent = place("Parent", None, (place_x, 0, 1), (0.3, 0.2, 0.6), (1, 1, thickness))
+        child = mesh("Hills", hills, faces, diffuse(color))
+        child.rotation_euler, child.parent = (0.4, 0.5, 0.6), parent
+    select(child)
+    bpy.ops.object.mode_set(mode="EDIT")

@@ -3,7 +3,8 @@
 
 import bpy
 import numpy as np
-from stage import add, checker, diffuse, face_on, feed, gradient, image, painted, saved_image, scene, sheet
+from stage import add, checker, diffuse, face_on, feed, gradient, image, material, painted, saved_image, scene, sheet
+from wardmis import compat
 
 CORNERS = checker((0.9, 0.1, 0.1), (0.1, 0.8, 0.2), (0.1, 0.2, 0.9), (0.8, 0.8, 0.1))
 
@@ -444,5 +445,167 @@ def calculated():
     def build(tree):
         color = texture(tree, image("Colours", gradient(4, 4), floats=True)).outputs["Color"]
         return add(tree, "Gamma", Color=color, Gamma=3.0).outputs[0]
+
+    sheet(painted(build))
+
+
+def with_alpha_to(use, pixels=None, settings=None):
+    """An image whose colour is shown, and whose alpha goes where `use(tree, node)` leads it; that may return another colour."""
+    face_on()
+    picture = saved_image("used", with_alpha() if pixels is None else pixels)
+
+    def build(tree):
+        node = texture(tree, picture, settings)
+        return use(tree, node) or node.outputs["Color"]
+
+    sheet(painted(build))
+
+
+def mixed_in(**inputs):
+    """Mixed with alpha so that Cycles finds that there is nothing to mix."""
+    return lambda tree, node: add(
+        tree,
+        "MixRGB",
+        {key: inputs[key] for key in ("blend_type", "use_clamp") if key in inputs},
+        Color1=node.outputs["Color"],
+        Color2=inputs.get("Color2", node.outputs["Alpha"]),
+        Fac=inputs.get("Fac", node.outputs["Alpha"]),
+    ).outputs[0]
+
+
+@scene
+def alpha_to_no_node():
+    """A reroute that ends, and a node that nothing hangs on."""
+
+    def use(tree, node):
+        tree.links.new(node.outputs["Alpha"], tree.nodes.new("NodeReroute").inputs[0])
+        add(tree, "Math", Value=node.outputs["Alpha"])
+
+    with_alpha_to(use)
+
+
+@scene
+def alpha_to_another_renderer():
+    def use(tree, node):
+        output = add(tree, "OutputMaterial", {"target": "EEVEE"})
+        shader = add(tree, "Emission", Strength=node.outputs["Alpha"])
+        tree.links.new(shader.outputs[0], output.inputs["Surface"])
+
+    with_alpha_to(use)
+
+
+@scene
+def alpha_out_of_a_group():
+    """Whose alpha nobody takes."""
+    face_on()
+    picture = saved_image("grouped", with_alpha())
+
+    def build(tree):
+        group = bpy.data.node_groups.new("Group", "ShaderNodeTree")
+        inner, end = texture(group, picture), None
+        for name, kind in (("Color", "NodeSocketColor"), ("Alpha", "NodeSocketFloat")):
+            compat.add_group_socket(group, name, kind, "OUTPUT")
+        end = group.nodes.new("NodeGroupOutput")
+        for name in ("Color", "Alpha"):
+            group.links.new(inner.outputs[name], end.inputs[name])
+        used = tree.nodes.new("ShaderNodeGroup")
+        used.node_tree = group
+        return used.outputs["Color"]
+
+    sheet(painted(build))
+
+
+@scene
+def alpha_mixed_by_nothing():
+    with_alpha_to(mixed_in(Fac=0.0))
+
+
+@scene
+def alpha_mixed_by_nothing_and_clamped():
+    with_alpha_to(mixed_in(Fac=0.0, use_clamp=True))
+
+
+@scene
+def alpha_times_one():
+    """The factor of a multiplication by one."""
+    with_alpha_to(mixed_in(blend_type="MULTIPLY", Color2=(1, 1, 1, 1)))
+
+
+@scene
+def alpha_times_zero():
+    """Two nodes that make nothing of it: what is left of it is a constant, by which the other mixes nothing."""
+
+    def use(tree, node):
+        none = add(tree, "Math", {"operation": "MULTIPLY"}, Value=node.outputs["Alpha"])
+        sum_ = add(tree, "Math", {"operation": "ADD"}, Value=none.outputs[0])
+        none.inputs[1].default_value = sum_.inputs[1].default_value = 0
+        return mixed_in(Fac=sum_.outputs[0])(tree, node)
+
+    with_alpha_to(use)
+
+
+@scene
+def alpha_of_a_muted_mix():
+    def use(tree, node):
+        mixed = mixed_in()(tree, node)
+        mixed.node.mute = True
+        return mixed
+
+    with_alpha_to(use)
+
+
+@scene
+def alpha_of_a_shader_that_is_black():
+    """Mixed with an emission of no strength, whose colour it is."""
+    face_on()
+    picture = saved_image("black", with_alpha())
+    made, tree, output = material()
+    node = texture(tree, picture)
+    black = add(tree, "Emission", Color=node.outputs["Alpha"], Strength=0.0)
+    shader = add(tree, "BsdfDiffuse", Color=node.outputs["Color"])
+    total = tree.nodes.new("ShaderNodeAddShader")
+    for i, part in enumerate((shader, black)):
+        tree.links.new(part.outputs[0], total.inputs[i])
+    tree.links.new(total.outputs[0], output.inputs["Surface"])
+    sheet(made)
+
+
+@scene(within=0.03, why="Cycles multiplies by alpha in 8 bits, and divides again")
+def alpha_of_a_displacement():
+    """There it is used, though nothing is moved."""
+    pixels = with_alpha(0.5)
+    pixels[:4, :, 3] = 1
+
+    def use(tree, node):
+        moved = add(tree, "Displacement", Height=node.outputs["Alpha"], Scale=0.0)
+        output = next(n for n in tree.nodes if n.bl_idname == "ShaderNodeOutputMaterial")
+        tree.links.new(moved.outputs[0], output.inputs["Displacement"])
+
+    with_alpha_to(use, pixels, {"interpolation": "Closest"})
+
+
+@scene(within=0.06, why="nodes calculate with pixels, before these are filtered")
+def alpha_of_a_like_node():
+    """Cycles makes one of two nodes that show the same: the alpha of one counts as that of the other."""
+    face_on()
+    picture = saved_image("alike", with_alpha())
+
+    def build(tree):
+        color, alpha = texture(tree, picture), add(tree, "TexImage", {"image": picture})
+        inputs = {"Color1": (0.2, 0.2, 0.2, 1), "Color2": color.outputs["Color"]}
+        return add(tree, "MixRGB", Fac=alpha.outputs["Alpha"], **inputs).outputs[0]
+
+    sheet(painted(build))
+
+
+@scene(within=0.06, why="nodes calculate with pixels, before these are filtered")
+def alpha_of_an_unlike_node():
+    face_on()
+    picture = saved_image("unlike", with_alpha())
+
+    def build(tree):
+        color, alpha = texture(tree, picture), texture(tree, picture, {"interpolation": "Cubic"})
+        inputs = {"Color1": (0.2, 0.2, 0.2, 1), "Color2": color.outputs["Color"]}
+        return add(tree, "MixRGB", Fac=alpha.outputs["Alpha"], **inputs).outputs[0]
 
     sheet(painted(build))
