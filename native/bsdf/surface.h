@@ -15,12 +15,15 @@ struct Surface {
   bool hasDiffuse() const { return maxComponent(diffuse) > 0; }
   bool hasSpecular() const { return maxComponent(specular) > 0; }
 
+  static constexpr Rgb transparent{0, 0, 0};  // what goes straight through
   bool reflects() const { return hasDiffuse() || hasSpecular(); }
   Rgb albedo() const { return diffuse + specular; }
 
   // The lobes by number: the first is Ward's.
   bool hasLobe(size_t lobe) const { return lobe == 0 && hasSpecular(); }
   Rgb lobeWeight(size_t) const { return specular; }
+  float strength(size_t) const { return luminance(specular); }
+  float diffuseStrength() const { return luminance(diffuse); }
   template <class T>
   Vec3<T> sampleLobe(size_t, Vec3<T> wo, Vec2<T> u) const {
     return wardSample<T>(wo, T(ax), T(ay), u);

@@ -97,6 +97,10 @@ Material Materials::ward(const Json& extension) {
   Material m;
   program_.reset();
   if (const auto program = extension.find("program")) program_.emplace(*program, textures_.size());
+  const auto closures = extension.find("closures");
+  for (const char* shortForm : {"variant", "diffuse", "specular", "alphaX", "alphaY", "rotation", "normal"})
+    if (closures && extension.find(shortForm))
+      closures->fail(fmt::format("stands beside '{}', in whose place it is", shortForm), "export the scene again");
   if (const auto variant = extension.find("variant")) m.variant = variant->choice(kVariants);
   readColor(extension, "diffuse", m.diffuse);
   readColor(extension, "specular", m.specular);
@@ -105,15 +109,61 @@ Material Materials::ward(const Json& extension) {
   readAlpha(extension, "alphaY", m.alphaY);
   m.rotation = extension.numberOr("rotation", 0);
   m.index = extension.numberOr("index", 0);
-  if (const auto normal = extension.find("normal")) {
-    normal->at("result");
-    readResult(*normal, ValueKind::kVector, m.normal);
+  readNormal(extension, "normal", m.normal);
+  if (closures) {
+    const JsonArray list = closures->array();
+    for (size_t i = 0; i < list.size(); ++i) m.closures.push_back(closure(list[i]));
+    m.transparent = std::any_of(m.closures.begin(), m.closures.end(), mayBeTransparent);
   }
   if (program_) {
     std::shared_ptr<Program> program = program_->finish([&](const Json& index) { return texture(index, true); });
     if (!program->results.empty()) m.program = std::move(program);
   }
   return m;
+}
+
+void Materials::readNormal(const Json& json, const char* key, int& result) {
+  if (const auto normal = json.find(key)) {
+    normal->at("result");
+    readResult(*normal, ValueKind::kVector, result);
+  }
+}
+
+Closure Materials::closure(const Json& json) {
+  constexpr std::pair<std::string_view, Glossy> kDistributions[] = {{"ggx", Glossy::kGgx},
+                                                                    {"beckmann", Glossy::kBeckmann},
+                                                                    {"multi-ggx", Glossy::kMultiGgx},
+                                                                    {"ashikhmin-shirley", Glossy::kAshikhminShirley}};
+  Closure c;
+  const Json type = json.at("type");
+  c.version = static_cast<uint8_t>(json.integerOr("version", 5, 3, 5));
+  size_t k = 0;
+  const auto is = [&](const ClosureInfo& i) {
+    return i.name == type.string() && i.firstVersion <= c.version && c.version <= i.lastVersion;
+  };
+  while (k < kClosureTypes && !is(info(static_cast<ClosureType>(k)))) ++k;
+  if (k == kClosureTypes)
+    type.fail(fmt::format("there is no closure '{}' of version {}", cleaned(type.string().substr(0, 40)), c.version),
+              "export the scene again");
+  c.type = static_cast<ClosureType>(k);
+  const ClosureInfo& i = info(c.type);
+  readColor(json, "weight", c.weight);
+  readScalar(json, "rotation", c.rotation);
+  for (const ClosureInput& input : i.colors) {
+    c.colors.push_back({{input.value, input.value, input.value}, {}});
+    readColor(json, input.name, c.colors.back());
+  }
+  for (const ClosureInput& input : i.scalars) {
+    c.scalars.push_back({input.value, {}});
+    readScalar(json, input.name, c.scalars.back());
+  }
+  if (const auto variant = json.find("variant")) c.variant = variant->choice(kVariants);
+  if (const auto distribution = json.find("distribution"); distribution && i.distribution)
+    c.distribution = distribution->choice(kDistributions);
+  if (const auto thin = json.find("thinWall")) c.thinWall = thin->boolean();
+  readNormal(json, "normal", c.normal);
+  readNormal(json, "coatNormal", c.coatNormal);
+  return c;
 }
 
 bool Materials::readResult(const Json& input, ValueKind kind, int& result) {
@@ -133,6 +183,14 @@ void Materials::readColor(const Json& extension, std::string_view key, ColorInpu
   if (isBlack(out.value)) out.result = -1;  // nothing to multiply
   if (isBlack(out.value) || computed) return;
   if (const auto texture = json->find("texture")) out.texture = wardTexture(*texture, true);
+}
+
+void Materials::readScalar(const Json& extension, std::string_view key, ScalarInput& out) {
+  const auto json = extension.find(key);
+  if (!json) return;
+  out.value = json->numberOr("value", 1);
+  if (readResult(*json, ValueKind::kNumber, out.result)) return;
+  if (const auto texture = json->find("texture")) out.texture = wardTexture(*texture, false);
 }
 
 void Materials::readAlpha(const Json& extension, std::string_view key, ScalarInput& out) {
@@ -458,18 +516,17 @@ void Materials::finish(Scene& scene) {
       }
       m.program = std::move(program);
     }
-    for (ColorInput* input : {&m.diffuse, &m.specular, &m.emission}) keep(input->texture.texture);
-    for (ScalarInput* input : {&m.alphaX, &m.alphaY}) {
-      keep(input->texture.texture);
-      if (input->texture.texture < 0) continue;
+    Material::forEachInput(m, [&](auto& input) {
+      keep(input.texture.texture);
+      if (input.texture.texture < 0 || std::is_same_v<decltype(input), ColorInput&>) return;
       // A channel that the image lacks: grey stands for all colours, and alpha is 1.
-      const int channels = scene.images[scene.textures[input->texture.texture].image].channels;
-      int& channel = input->texture.channel;
+      const int channels = scene.images[scene.textures[input.texture.texture].image].channels;
+      int& channel = input.texture.channel;
       if (channel == 3 && channels % 2 == 1)
-        input->texture = {};
+        input.texture = {};
       else
         channel = channel == 3 ? channels - 1 : channels < 3 ? 0 : channel;
-    }
+    });
   }
   for (World& w : scene.worlds) keep(w.texture);
   scene.materials = std::move(read_.materials);

@@ -7,7 +7,7 @@
 #include <new>
 #include <numeric>
 
-#include "integrate/interaction.h"
+#include "integrate/trace.h"
 #include "math/check.h"
 #include "math/random.h"
 #include "math/warp.h"
@@ -39,14 +39,6 @@ struct Counts {
   }
 };
 
-// The built scene, read-only, shared by all threads.
-struct RenderScene {
-  const Scene& scene;
-  const Geometry& geometry;
-  const Accel& accel;
-  const Emitters& emitters;
-};
-
 // A local array whose elements are made when they are first assigned: most hits use few of them.
 template <class E, int Capacity>
 class Scratch {
@@ -65,7 +57,7 @@ struct Dimensions {
 };
 
 // Kinds of bounces, as Cycles limits them.
-enum Bounce : uint8_t { kDiffuseBounce, kGlossyBounce, kBounceKinds };
+enum Bounce : uint8_t { kDiffuseBounce, kGlossyBounce, kTransmissionBounce, kBounceKinds };
 
 // How far paths go, as Cycles counts: surface hits, and how often one may go on from a bounce of each kind. What a ray
 // meets where that is used up still gives its own light, and reflects none.
@@ -73,7 +65,11 @@ struct PathLimits {
   int depth = 1;
   std::array<int, kBounceKinds> bounces{};
 
-  bool bounce() const { return depth > 1 && *std::max_element(bounces.begin(), bounces.end()) > 0; }
+  // Whether a path may go on at all, on surfaces that transmit light or do not.
+  bool bounce(bool transmission) const {
+    const int reflection = std::max(bounces[kDiffuseBounce], bounces[kGlossyBounce]);
+    return depth > 1 && (reflection > 0 || (transmission && bounces[kTransmissionBounce] > 0));
+  }
 };
 
 // How a hit is to be sampled.
@@ -99,9 +95,10 @@ struct Continuation {
   Rgb weight{0, 0, 0};  // f cos / pdf with MIS weights and counts, for light that no light sample covers
   size_t technique = 0;
   Bounce bounce = kGlossyBounce;
-  float scale = 0;   // weight / (f cos)
-  int set = 0;       // of the pilot's samples
-  Fractions<K> p{};  // densities of the techniques
+  float scale = 0;         // weight / (f cos)
+  TechniqueMask used = 0;  // techniques that find what lies there
+  int set = 0;             // of the pilot's samples
+  Fractions<K> p{};        // densities of the techniques
 };
 
 template <size_t K>
@@ -137,12 +134,13 @@ struct HitRecord {
 
 // Estimates the direct light at x, in double where T is (sharp lobes). Continuations are kept only if N needs bounces.
 template <uint32_t N, class T, size_t K>
-Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interaction& x, const HitPlan<K>& plan,
-                Counts& counts, HitRecord<K>* record, Continuations<K>& continuations) {
+Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const InteractionOf<SurfaceOf<N, K>>& x,
+                const HitPlan<K>& plan, Counts& counts, HitRecord<K>* record, Continuations<K>& continuations) {
   constexpr size_t kLobes = Techniques<K>::kLobes, kCosine = Techniques<K>::kCosine, kLight = Techniques<K>::kLight;
   constexpr TechniqueMask kAll = Techniques<K>::kAll;
+  constexpr bool kGeneral = (N & kNeedsLobes) != 0;  // any lobes, else one of Ward's
   constexpr bool kSpec = (N & kNeedsSpecular) != 0, kDiff = (N & kNeedsDiffuse) != 0, kPath = (N & kNeedsBounces) != 0;
-  const Surface& s = x.surface;
+  const SurfaceOf<N, K>& s = x.surface;
   const Vec3f woFloat = x.frame.toLocal(x.wo);
   const bool split = plan.integrand == Integrand::kSplit;
   const Mixture<K> mixture(plan.fractions, plan.samples, plan.weights);
@@ -154,12 +152,14 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
   // the surface's own integrands; below its normal's horizon, which looks into the surface, a lobe is zero
   std::array<bool, Techniques<K>::kSurface> present{};
   if constexpr (kSpec)
-    for (size_t l = 0; l < kLobes; ++l) present[l] = s.hasLobe(l) && woFloat.z > 0;
+    for (size_t l = 0; l < kLobes; ++l) present[l] = s.hasLobe(l) && (kGeneral || woFloat.z > 0);
   present[kCosine] = kDiff && s.hasDiffuse();
 
   // Draw the directions of all techniques.
   LobeBatch<T, kLobes, kMaxSamplesPerHit> batch;
   Scratch<LightSample, kMaxSamplesPerHit> light;
+  using LobeSample = typename LobeSurface<K>::Sample;
+  Scratch<LobeSample, kGeneral ? kMaxSamplesPerHit : 1> from;  // of which lobe
   const auto indexOf = [&](size_t t, int m) { return plan.firstPoint[t] + static_cast<uint32_t>(m); };
   const auto point = [&](size_t t, int m) {
     return sampler.get2D(plan.pixelKey, dimension + Dimensions<K>::kTechnique + static_cast<uint32_t>(t),
@@ -171,7 +171,13 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     if constexpr (kSpec)
       for (int m = 0; m < n[l]; ++m) {
         const Vec2f u = point(l, m);
-        batch.set(j++, s.sampleLobe(l, wo, Vec2<T>{T(u.x), T(u.y)}));
+        if constexpr (kGeneral) {
+          LobeSample chosen;
+          batch.set(j, present[l] ? s.sample(l, wo, Vec2<T>{T(u.x), T(u.y)}, chosen) : Vec3<T>{});
+          from.set(j++, chosen);
+        } else {
+          batch.set(j++, s.sampleLobe(l, wo, Vec2<T>{T(u.x), T(u.y)}));
+        }
       }
     end[l] = j;
   }
@@ -193,10 +199,10 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
   end[kLight] = j;
   bool lobes = false;
   for (size_t l = 0; l < kLobes; ++l) lobes = lobes || present[l];
-  const bool vectorised = lobes && j >= kVectorised;
-  if (vectorised)
+  const bool vectorised = !kGeneral && lobes && j >= kVectorised;
+  if constexpr (!kGeneral)
     for (size_t l = 0; l < kLobes; ++l)
-      if (present[l]) s.evaluateLobe(l, wo, batch, j);
+      if (vectorised && present[l]) s.evaluateLobe(l, wo, batch, j);
 
   const auto note = [&](size_t integrand, Rgb f, const Fractions<K>& p, TechniqueMask used, int set) {
     if (record != nullptr) record->add(integrand, std::abs(luminance(f)), p, mixture.n, used, set);
@@ -216,17 +222,23 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     for (size_t i = 1; i < f.size(); ++i) all += f[i];
     return all;
   };
-  const auto add = [&](size_t t, const Values& all, Rgb radiance, const Fractions<K>& p, uint8_t visibility, int set) {
+  // sharp: t's lobe has but one direction, which no other technique finds.
+  const auto techniques = [&](size_t own, bool sharp) {
+    return sharp ? maskOf(own) : techniquesFor<K>(plan.integrand, own);
+  };
+  const auto add = [&](size_t t, bool sharp, const Values& all, Rgb radiance, const Fractions<K>& p, uint8_t visibility,
+                       int set) {
     const Values f = seen(all, visibility);
     if (!split) {
       const Rgb value = total(f) * radiance;
-      sum += value * mixture.scale(t, p, kAll);
-      note(0, value, p, kAll, set);
+      const TechniqueMask used = techniques(t, sharp);
+      sum += value * mixture.scale(t, p, used);
+      note(0, value, p, used, set);
       return;
     }
     for (size_t i = 0; i < f.size(); ++i) {
       if (!present[i] || (t != i && t != kLight)) continue;
-      const TechniqueMask used = techniquesFor<K>(Integrand::kSplit, i);
+      const TechniqueMask used = techniques(i, sharp);
       const Rgb value = f[i] * radiance;
       sum += value * mixture.scale(t, p, used);
       note(i, value, p, used, set);
@@ -244,23 +256,47 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     const int set = (k - (t == 0 ? 0 : end[t - 1])) % kSets;
     ++counts.samples[t];
     const Vec3<T> wi = batch.wi(k);
-    if (!(wi.z > T(0)) || (t < kLobes && !present[t])) continue;  // below the surface: zero, and it counts
+    if (t < kLobes && !present[t]) continue;
+    if (!kGeneral && !(wi.z > T(0))) continue;  // below the surface: zero, and it counts
     Values f{};
     Fractions<K> p{};
-    for (size_t l = 0; l < kLobes; ++l) {
-      if (!present[l]) continue;
-      const WardValue<T> value = vectorised ? batch.value(l, k) : s.evaluateLobe(l, wi, wo);
-      counts.underflows += value.pdf < std::numeric_limits<T>::min() ? 1 : 0;
-      f[l] = s.lobeWeight(l) * static_cast<float>(value.fCos);
-      p[l] = static_cast<float>(value.pdf);
+    const auto inWorld = [&] {
+      return normalize(
+          x.frame.toWorld(Vec3f{static_cast<float>(wi.x), static_cast<float>(wi.y), static_cast<float>(wi.z)}));
+    };
+    bool sharp = false, ahead = true;  // wi leaves the surface on the viewer's side
+    if constexpr (kGeneral) {
+      const Vec3f d = t == kLight ? light[k].direction : inWorld();
+      const float side = dot(x.geometric, d);
+      ahead = side > 0;
+      // on the other side a lobe has no density of its own, whatever others have there: zero, and it counts
+      if (!(side != 0) || (t < kLobes && from[k].transmits == ahead) || (t == kCosine && !ahead)) continue;
+      sharp = t < kLobes && s.delta(t);
+      if (sharp) {
+        f[t] = s.weight(from[k], wi, wo);
+        p[t] = 1;
+      } else {
+        s.evaluate(wi, wo, ahead, f, p);
+        if (t != kLight && !(p[t] > 0)) continue;
+        for (size_t l = 0; l < kLobes; ++l)
+          counts.underflows += present[l] && p[l] < std::numeric_limits<float>::min() ? 1 : 0;
+      }
+    } else {
+      for (size_t l = 0; l < kLobes; ++l) {
+        if (!present[l]) continue;
+        const WardValue<T> value = vectorised ? batch.value(l, k) : s.evaluateLobe(l, wi, wo);
+        counts.underflows += value.pdf < std::numeric_limits<T>::min() ? 1 : 0;
+        f[l] = s.lobeWeight(l) * static_cast<float>(value.fCos);
+        p[l] = static_cast<float>(value.pdf);
+      }
+      const float cosine = static_cast<float>(wi.z) * (1 / kPi<float>);  // f_d cos for rho_d = 1, and its density
+      f[kCosine] = s.diffuse * cosine;
+      p[kCosine] = present[kCosine] ? cosine : 0.0f;
     }
-    const float cosine = static_cast<float>(wi.z) * (1 / kPi<float>);  // f_d cos for rho_d = 1, and its density
-    f[kCosine] = s.diffuse * cosine;
-    p[kCosine] = present[kCosine] ? cosine : 0.0f;
 
     if (t == kLight) {
       const LightSample& l = light[k];
-      if (!(l.pdf > 0) || !(dot(x.geometric, l.direction) > 0) || isBlack(l.radiance)) continue;
+      if (!(l.pdf > 0) || !(kGeneral || dot(x.geometric, l.direction) > 0) || isBlack(l.radiance)) continue;
       if (!(maxComponent(total(f)) > 0)) continue;
       Ray shadow;
       shadow.origin = x.leave(l.direction);
@@ -274,13 +310,16 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
         shadow.direction = to / d;
         shadow.tMax = d * (1 - 1e-4f);
       }
+      Rgb radiance = l.radiance;
       if (l.shadow) {
         ++counts.rays[kLight];
-        if (world.accel.occluded(shadow)) continue;
+        const Rgb left = transmittance<N, K>(world, shadow);
+        if (isBlack(left)) continue;
+        if constexpr (kGeneral) radiance *= left;
       }
       if (l.exclusive) {
         Values each = seen(f, l.visibility);
-        for (Rgb& value : each) value = value * l.radiance;
+        for (Rgb& value : each) value = value * radiance;
         sum += total(each) / (l.pdf * mixture.n[kLight]);
         // which of the lights is drawn is noise, too, and no other technique covers them
         Fractions<K> alone{};
@@ -292,40 +331,53 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
         }
       } else {
         p[kLight] = l.pdf;
-        add(kLight, f, l.radiance, p, l.visibility, set);
+        add(kLight, false, f, radiance, p, l.visibility, set);
       }
       continue;
     }
 
     // A surface technique: follow the ray to what it meets.
-    const Vec3f d =
-        normalize(x.frame.toWorld(Vec3f{static_cast<float>(wi.x), static_cast<float>(wi.y), static_cast<float>(wi.z)}));
-    if (!(dot(x.geometric, d) > 0)) continue;
+    const Vec3f d = inWorld();
+    if (!kGeneral && !(dot(x.geometric, d) > 0)) continue;
+    const bool diffuse = t == kCosine || (kGeneral && !from[k].glossy);
+    if constexpr (kGeneral)
+      if (!(maxComponent(total(f)) > 0)) continue;
     Ray ray;
     ray.origin = x.leave(d);
     ray.direction = d;
-    ray.kind = t < kLobes ? kSeenByGlossy : kSeenByDiffuse;
-    ray.path = x.path.scattered((t < kLobes ? kGlossyRay : kDiffuseRay) | kReflectionRay, x.rayLength);
+    ray.kind = diffuse ? kSeenByDiffuse : kSeenByGlossy;
+    ray.path =
+        x.path.scattered(static_cast<uint16_t>((diffuse ? kDiffuseRay : kGlossyRay) | (sharp ? kSingularRay : 0) |
+                                               (ahead ? kReflectionRay : kTransmissionRay)),
+                         x.rayLength);
     ++counts.rays[t];
-    const Hit hit = world.accel.intersect(ray);
-    world.emitters.along(ray, hit.t, !hit.valid(), static_cast<int>(plan.vertex), [&](const EmitterHit& e) {
-      p[kLight] = e.pdf;
-      add(t, f, e.radiance, p, e.visibility, set);
+    Rgb seenThrough{1, 1, 1};
+    const uint32_t key = combine(combine(plan.pixelKey, dimension + static_cast<uint32_t>(t)),
+                                 plan.index * uint32_t{kMaxSamplesPerHit} + static_cast<uint32_t>(k));
+    const Hit hit = trace<N, K>(world, ray, key, seenThrough, [&](float tMax, bool escaped) {
+      world.emitters.along(ray, tMax, escaped, static_cast<int>(plan.vertex), [&](const EmitterHit& e) {
+        p[kLight] = e.pdf;
+        add(t, sharp, f, kGeneral ? e.radiance * seenThrough : e.radiance, p, e.visibility, set);
+      });
     });
     if (!hit.valid()) continue;
     const Shape& shape = world.geometry.shapes[hit.shape];
     const Material& m = world.scene.materials[static_cast<size_t>(shape.material)];
     if (!isBlack(m.emission.value)) {
       p[kLight] = world.emitters.trianglePdf(world.geometry.placements[hit.placement], hit, d);
-      const Rgb radiance = interact<N>(world.scene, world.geometry, ray, hit).emission;
-      add(t, f, radiance, p, world.geometry.placements[hit.placement].visibility, set);
+      Rgb radiance = interact<N, K>(world.scene, world.geometry, ray, hit).emission;
+      if constexpr (kGeneral) radiance *= seenThrough;
+      add(t, sharp, f, radiance, p, world.geometry.placements[hit.placement].visibility, set);
     }
     if constexpr (kPath) {
       p[kLight] = 0;  // no light sample covers what is reflected there
-      const float scale = mixture.scale(t, p, techniquesFor<K>(plan.integrand, t));
-      const Rgb w = (split ? f[t] : total(f)) * scale;
-      const Bounce bounce = t < kLobes ? kGlossyBounce : kDiffuseBounce;
-      if (maxComponent(w) > 0) continuations.list.set(continuations.count++, {ray, hit, w, t, bounce, scale, set, p});
+      const TechniqueMask used = techniques(t, sharp);
+      const float scale = mixture.scale(t, p, used);
+      Rgb w = (split ? f[t] : total(f)) * scale;
+      if constexpr (kGeneral) w *= seenThrough;
+      const Bounce bounce = diffuse ? kDiffuseBounce : ahead ? kGlossyBounce : kTransmissionBounce;
+      if (maxComponent(w) > 0)
+        continuations.list.set(continuations.count++, {ray, hit, w, t, bounce, scale, used, set, p});
     }
   }
   if (record != nullptr && record->moments != nullptr)

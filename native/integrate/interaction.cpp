@@ -3,7 +3,8 @@
 
 namespace wardmis::detail {
 
-void resolve(const Scene& scene, const Material& m, const ShadedPoint& point, Vec2f uv, Interaction& x, Vec3f& normal) {
+void resolve(const Scene& scene, const Material& m, const ShadedPoint& point, Vec2f uv, Surface& surface, Rgb& emission,
+             Vec3f& normal) {
   Slots slots;
   runProgram(scene, point, slots);
   const Program& program = *m.program;
@@ -17,15 +18,95 @@ void resolve(const Scene& scene, const Material& m, const ShadedPoint& point, Ve
   const auto alpha = [&](const ScalarInput& c) {
     return c.result >= 0 ? clampedAlpha(c.value * numberOf(program, slots, c.result)) : evaluateAlpha(scene, c, uv);
   };
-  x.surface.diffuse = reflectance(m.diffuse);
-  x.surface.specular = reflectance(m.specular);
-  x.surface.ax = alpha(m.alphaX);
-  x.surface.ay = alpha(m.alphaY);
-  x.emission = color(m.emission);
+  surface.diffuse = reflectance(m.diffuse);
+  surface.specular = reflectance(m.specular);
+  surface.ax = alpha(m.alphaX);
+  surface.ay = alpha(m.alphaY);
+  emission = color(m.emission);
   if (m.normal < 0) return;
   const Vec3f n = vectorOf(program, slots, m.normal);
   const float l = length(n);
   if (l > 0) normal = bent(n / l, point.geometric, point.wo);
 }
+
+template <size_t K>
+Framef resolveLobes(const Scene& scene, const Material& m, const ShadedPoint& point, Vec2f uv, Vec3f tangent,
+                    LobeSurface<K>& surface, Rgb& emission) {
+  Slots slots;
+  if (m.program) runProgram(scene, point, slots);
+  const auto color = [&](const ColorInput& c) {
+    if (c.result >= 0) return c.value * vectorOf(*m.program, slots, c.result);
+    return c.texture.texture >= 0 ? evaluate(scene, c, uv) : c.value;
+  };
+  const auto scalar = [&](const ScalarInput& c) {
+    if (c.result >= 0) return c.value * numberOf(*m.program, slots, c.result);
+    return c.texture.texture >= 0 ? c.value * sampleScalar(scene, c.texture, uv) : c.value;
+  };
+  const auto normalOf = [&](int result, Vec3f otherwise) {
+    if (result < 0) return otherwise;
+    const Vec3f n = vectorOf(*m.program, slots, result);
+    const float l = length(n);
+    return l > 0 ? bent(n / l, point.geometric, point.wo) : otherwise;
+  };
+  const auto frameAround = [&](Vec3f n, bool anisotropic, float rotation) {
+    if (!anisotropic) return Framef::around(n);
+    const Framef f = Framef::around(n, tangent);
+    const float c = std::cos(rotation), s = std::sin(rotation);
+    return Framef{f.x * c + f.y * s, f.y * c - f.x * s, n};
+  };
+  emission = isBlack(m.emission.value) ? Rgb{0, 0, 0} : color(m.emission);
+
+  if (m.closures.empty()) {
+    Lobe diffuse, ward;
+    diffuse.weight = notNegative(color(m.diffuse));
+    ward.weight = notNegative(color(m.specular));
+    ward.kind = static_cast<LobeKind>(static_cast<int>(LobeKind::kWard) + static_cast<int>(m.variant));
+    ward.ax = clampedAlpha(scalar(m.alphaX)), ward.ay = clampedAlpha(scalar(m.alphaY));
+    const Framef frame = frameAround(normalOf(m.normal, point.normal), ward.ax != ward.ay, m.rotation);
+    surface.begin(frame, point.wo);
+    if (maxComponent(diffuse.weight) > 0) surface.add(diffuse);
+    if (maxComponent(ward.weight) > 0) surface.add(ward);
+    surface.finish();
+    return frame;
+  }
+
+  const Framef frame = Framef::around(point.normal);
+  surface.begin(frame, point.wo);
+  for (const Closure& c : m.closures) {
+    ClosureValues v;
+    v.weight = color(c.weight);
+    if (!(maxComponent(v.weight) > 0)) continue;
+    for (size_t i = 0; i < c.colors.size(); ++i) v.colors[i] = color(c.colors[i]);
+    for (size_t i = 0; i < c.scalars.size(); ++i) v.scalars[i] = scalar(c.scalars[i]);
+    const bool twoAlphas = c.type == ClosureType::kWard || c.type == ClosureType::kGlossy;
+    const bool anisotropic = twoAlphas                             ? v.scalars[0] != v.scalars[1]
+                             : c.type == ClosureType::kPrincipled3 ? v.scalars[principled3::kAnisotropic] > 0
+                             : c.type == ClosureType::kPrincipled  ? v.scalars[principled::kAnisotropic] > 0
+                                                                   : false;
+    const Vec3f n = normalOf(c.normal, point.normal), coat = normalOf(c.coatNormal, n);
+    std::array<uint8_t, 3> at{};
+    if (anisotropic || c.normal >= 0) at[0] = surface.addFrame(frameAround(n, anisotropic, scalar(c.rotation)));
+    at[1] = at[2] = at[0];
+    if (c.coatNormal >= 0) {
+      at[1] = surface.addFrame(Framef::around(coat));
+      at[2] = at[1];
+      if (c.type == ClosureType::kPrincipled) {
+        const float share = std::clamp(v.scalars[principled::kCoatWeight], 0.0f, 1.0f);
+        at[2] = surface.addFrame(Framef::around(normalize(n * (1 - share) + coat * share)));
+      }
+    }
+    expand(c, v, {surface.cosine(at[0]), surface.cosine(at[1]), surface.cosine(at[2])}, point.turned, [&](Lobe lobe) {
+      lobe.frame = at[lobe.frame];
+      surface.add(lobe);
+    });
+  }
+  surface.finish();
+  return frame;
+}
+
+#define WARDMIS_INSTANTIATE(K)                                                                                      \
+  template Framef resolveLobes<K>(const Scene&, const Material&, const ShadedPoint&, Vec2f, Vec3f, LobeSurface<K>&, \
+                                  Rgb&);
+WARDMIS_TECHNIQUE_COUNTS(WARDMIS_INSTANTIATE)
 
 }  // namespace wardmis::detail

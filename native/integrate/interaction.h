@@ -3,6 +3,8 @@
 #pragma once
 
 #include "bsdf/surface.h"
+#include "integrate/expand.h"
+#include "integrate/lobe_surface.h"
 #include "scene/inputs.h"
 #include "world/accel.h"
 #include "world/needs.h"
@@ -10,12 +12,13 @@
 
 namespace wardmis {
 
-struct Interaction {
+template <class S>
+struct InteractionOf {
   Vec3f position;   // world
   Vec3f geometric;  // unit, on the side of wo
   Framef frame;     // z: shading normal; x: direction of the anisotropy
   Vec3f wo;         // world, unit, back along the ray
-  Surface surface;
+  S surface;
   Rgb emission{0, 0, 0};
   int material = 0;
   uint32_t placement = 0;
@@ -30,6 +33,11 @@ struct Interaction {
     return position + geometric * (dot(geometric, direction) < 0 ? -clearance : clearance);
   }
 };
+
+using Interaction = InteractionOf<Surface>;
+// The surface of a kernel with these needs.
+template <uint32_t N, size_t K>
+using SurfaceOf = std::conditional_t<(N & kNeedsLobes) != 0, LobeSurface<K>, Surface>;
 
 namespace detail {
 
@@ -87,20 +95,25 @@ inline Vec3f bent(Vec3f ns, Vec3f ng, Vec3f wo) {
 }
 
 // The surface's inputs where the material has a program.
-void resolve(const Scene& scene, const Material& material, const ShadedPoint& point, Vec2f uv, Interaction& x,
-             Vec3f& normal);
+void resolve(const Scene& scene, const Material& material, const ShadedPoint& point, Vec2f uv, Surface& surface,
+             Rgb& emission, Vec3f& normal);
+
+// The lobes of any material, and its light. Leaves the frame in which they are told.
+template <size_t K>
+Framef resolveLobes(const Scene& scene, const Material& material, const ShadedPoint& point, Vec2f uv, Vec3f tangent,
+                    LobeSurface<K>& surface, Rgb& emission);
 
 }  // namespace detail
 
 // ray: the one that hit. N: needs mask of the kernel.
-template <uint32_t N>
-Interaction interact(const Scene& scene, const Geometry& geometry, const Ray& ray, const Hit& hit) {
+template <uint32_t N, size_t K = 3>
+InteractionOf<SurfaceOf<N, K>> interact(const Scene& scene, const Geometry& geometry, const Ray& ray, const Hit& hit) {
   const Placement& placement = geometry.placements[hit.placement];
   const Shape& shape = geometry.shapes[hit.shape];
   const Material& m = scene.materials[static_cast<size_t>(shape.material)];
   const uint32_t* i = shape.indices + 3 * size_t{hit.triangle};
 
-  Interaction x;
+  InteractionOf<SurfaceOf<N, K>> x;
   x.material = shape.material;
   x.placement = hit.placement;
   x.wo = -ray.direction;
@@ -127,33 +140,39 @@ Interaction interact(const Scene& scene, const Geometry& geometry, const Ray& ra
 
   // UVs are in the file only where a texture is looked up (the reader leaves the others out).
   const Vec2f uv = shape.part->uvs.empty() ? Vec2f{} : detail::interpolate(shape.part->uvs, i, hit.u, hit.v);
-  const auto color = [&](const ColorInput& c) { return c.texture.texture >= 0 ? evaluate(scene, c, uv) : c.value; };
-  const auto alpha = [&](const ScalarInput& c) {
-    return c.texture.texture >= 0 ? evaluateAlpha(scene, c, uv) : c.value;
-  };
-  if (m.program) [[unlikely]] {
-    detail::resolve(scene, m,
-                    {placement, shape, hit.triangle, hit.u, hit.v, x.position, ng, ns, x.wo, turned, x.path, hit.t}, uv,
-                    x, ns);
+  const ShadedPoint point{placement, shape, hit.triangle, hit.u,  hit.v,  x.position,
+                          ng,        ns,    x.wo,         turned, x.path, hit.t};
+  if constexpr ((N & kNeedsLobes) != 0) {
+    x.frame = detail::resolveLobes<K>(scene, m, point, uv, detail::tangent(placement, shape, i, x.position), x.surface,
+                                      x.emission);
+    return x;
   } else {
-    if constexpr ((N & kNeedsDiffuse) != 0) x.surface.diffuse = color(m.diffuse);
-    if constexpr ((N & kNeedsSpecular) != 0) {
-      x.surface.specular = color(m.specular);
-      x.surface.ax = alpha(m.alphaX);
-      x.surface.ay = alpha(m.alphaY);
+    const auto color = [&](const ColorInput& c) { return c.texture.texture >= 0 ? evaluate(scene, c, uv) : c.value; };
+    const auto alpha = [&](const ScalarInput& c) {
+      return c.texture.texture >= 0 ? evaluateAlpha(scene, c, uv) : c.value;
+    };
+    if (m.program) [[unlikely]] {
+      detail::resolve(scene, m, point, uv, x.surface, x.emission, ns);
+    } else {
+      if constexpr ((N & kNeedsDiffuse) != 0) x.surface.diffuse = color(m.diffuse);
+      if constexpr ((N & kNeedsSpecular) != 0) {
+        x.surface.specular = color(m.specular);
+        x.surface.ax = alpha(m.alphaX);
+        x.surface.ay = alpha(m.alphaY);
+      }
+      if (!isBlack(m.emission.value)) x.emission = color(m.emission);
     }
-    if (!isBlack(m.emission.value)) x.emission = color(m.emission);
-  }
-  if constexpr ((N & kNeedsSpecular) != 0) x.surface.variant = m.variant;
+    if constexpr ((N & kNeedsSpecular) != 0) x.surface.variant = m.variant;
 
-  if ((N & kNeedsSpecular) != 0 && x.surface.ax != x.surface.ay) {
-    const Framef f = Framef::around(ns, detail::tangent(placement, shape, i, x.position));
-    const float c = std::cos(m.rotation), s = std::sin(m.rotation);
-    x.frame = {f.x * c + f.y * s, f.y * c - f.x * s, ns};
-  } else {
-    x.frame = Framef::around(ns);
+    if ((N & kNeedsSpecular) != 0 && x.surface.ax != x.surface.ay) {
+      const Framef f = Framef::around(ns, detail::tangent(placement, shape, i, x.position));
+      const float c = std::cos(m.rotation), s = std::sin(m.rotation);
+      x.frame = {f.x * c + f.y * s, f.y * c - f.x * s, ns};
+    } else {
+      x.frame = Framef::around(ns);
+    }
+    return x;
   }
-  return x;
 }
 
 }  // namespace wardmis

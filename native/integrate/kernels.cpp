@@ -8,7 +8,11 @@ namespace wardmis {
 namespace {
 
 // A scene that reflects nothing takes the diffuse kernel: a superset, and never timed.
+// So does one of more techniques than those of Ward's lobe, cosine and light, or of other lobes, that of everything.
+template <size_t K>
 constexpr uint32_t compiled(uint32_t needs) {
+  if (Techniques<K>::kLobes > 1 || (needs & kNeedsLobes) != 0)
+    return needs | kNeedsLobes | kNeedsDiffuse | kNeedsSpecular;
   return (needs & (kNeedsDiffuse | kNeedsSpecular)) != 0 ? needs : needs | kNeedsDiffuse;
 }
 
@@ -17,7 +21,7 @@ constexpr uint32_t compiled(uint32_t needs) {
 template <size_t K>
 TileKernel<K> tileKernel(uint32_t needs) {
   static constexpr auto table = []<uint32_t... N>(std::integer_sequence<uint32_t, N...>) {
-    return std::array<TileKernel<K>, sizeof...(N)>{&renderTile<compiled(N), K>...};
+    return std::array<TileKernel<K>, sizeof...(N)>{&renderTile<compiled<K>(N), K>...};
   }
   (std::make_integer_sequence<uint32_t, kKernelNeeds + 1>{});
   return table[needs & kKernelNeeds];

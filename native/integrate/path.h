@@ -8,12 +8,12 @@
 namespace wardmis {
 
 // The usual path tracer's shares: half to the light, the rest to the lobes by albedo.
-template <size_t K>
-Fractions<K> albedoFractions(const Surface& s) {
+template <size_t K, class S>
+Fractions<K> albedoFractions(const S& s) {
   Fractions<K> a{};
-  float sum = luminance(s.diffuse);
+  float sum = s.diffuseStrength();
   for (size_t l = 0; l < Techniques<K>::kLobes; ++l)
-    if (s.hasLobe(l)) sum += a[l] = luminance(s.lobeWeight(l));
+    if (s.hasLobe(l)) sum += a[l] = s.strength(l);
   if (!(sum > 0)) a.fill(1), sum = Techniques<K>::kSurface;
   float rest = 1;
   for (size_t l = 0; l < Techniques<K>::kLobes; ++l) {
@@ -27,8 +27,8 @@ Fractions<K> albedoFractions(const Surface& s) {
 
 // The techniques that a surface has, where emitters are aimed at or not, and where surface samples find anything or
 // not.
-template <size_t K>
-TechniqueMask techniquesAt(const Surface& s, bool lights, bool surfaceRays) {
+template <size_t K, class S>
+TechniqueMask techniquesAt(const S& s, bool lights, bool surfaceRays) {
   TechniqueMask mask = lights ? maskOf(Techniques<K>::kLight) : TechniqueMask{0};
   if (!surfaceRays) return mask;
   for (size_t l = 0; l < Techniques<K>::kLobes; ++l)
@@ -38,8 +38,8 @@ TechniqueMask techniquesAt(const Surface& s, bool lights, bool surfaceRays) {
 }
 
 template <uint32_t N, size_t K>
-Rgb estimate(const RenderScene& scene, const Sampler& sampler, const Interaction& x, const HitPlan<K>& plan,
-             Counts& counts, HitRecord<K>* record, Continuations<K>& more) {
+Rgb estimate(const RenderScene& scene, const Sampler& sampler, const InteractionOf<SurfaceOf<N, K>>& x,
+             const HitPlan<K>& plan, Counts& counts, HitRecord<K>* record, Continuations<K>& more) {
   if ((N & kNeedsSpecular) != 0 && x.surface.needsDouble(dot(x.frame.z, x.wo)))
     return estimateHit<N, double>(scene, sampler, x, plan, counts, record, more);
   return estimateHit<N, float>(scene, sampler, x, plan, counts, record, more);
@@ -60,7 +60,7 @@ Rgb followPath(const RenderScene& scene, const Sampler& sampler, uint32_t pixelK
   Hit hit = first.hit;
   const Counts::PerTechnique firstHitSamples = counts.samples;
   for (int vertex = 1; vertex < limits.depth; ++vertex) {
-    const Interaction x = interact<N>(scene.scene, scene.geometry, ray, hit);
+    const auto x = interact<N, K>(scene.scene, scene.geometry, ray, hit);
     const TechniqueMask mask = techniquesAt<K>(x.surface, lights, true);
     if ((mask & ~maskOf(Techniques<K>::kLight)) == 0) break;  // reflects nothing
     HitPlan<K> plan;

@@ -272,6 +272,7 @@ PathLimits RenderSettings::limits() const {
   if (integrator == Integrator::kDirect) return limits;
   limits.depth = maxDepth;
   limits.bounces[kGlossyBounce] = maxGlossy, limits.bounces[kDiffuseBounce] = maxDiffuse;
+  limits.bounces[kTransmissionBounce] = kLongestPath;
   return limits;
 }
 

@@ -88,6 +88,16 @@ BuiltScene::BuiltScene(const Scene& s, int threads)
   seconds = wallSeconds() - seconds;
 }
 
+size_t BuiltScene::lobes() const {
+  size_t most = 1;
+  for (const Shape& s : geometry.shapes) {
+    size_t lobes = 0;
+    for (const Closure& c : scene.materials[static_cast<size_t>(s.material)].closures) lobes += mostLobes(c);
+    most = std::max(most, lobes);
+  }
+  return std::min(most, size_t{kMaxTechniques - 2});
+}
+
 std::vector<std::string> BuiltScene::techniqueNames() const {
   return withTechniques(lobes(), [&](auto k) {
     std::vector<std::string> names(k());
@@ -100,12 +110,13 @@ std::vector<std::string> BuiltScene::techniqueNames() const {
 
 uint32_t needs(const BuiltScene& built, const RenderSettings& s) {
   uint32_t n = wardmis::needs(built.scene, built.geometry, built.emitters, s.integrand == Integrand::kJoint);
-  if (s.limits().bounce()) n |= kNeedsBounces;
+  if (s.limits().bounce((n & kNeedsLobes) != 0)) n |= kNeedsBounces;
   return n;
 }
 
 uint32_t kernelNeeds(const BuiltScene& built, const RenderSettings& s) {
-  return s.generalKernel ? uint32_t{kKernelNeeds} : needs(built, s) & kKernelNeeds;
+  const uint32_t n = needs(built, s) & kKernelNeeds;
+  return s.generalKernel ? n | (kKernelNeeds & ~uint32_t{kNeedsLobes}) : n;
 }
 
 template <size_t K>
@@ -113,7 +124,7 @@ RenderSetup<K>::RenderSetup(const BuiltScene& built, const RenderSettings& s)
     : needs(wardmis::needs(built, s)),
       kernelNeeds(wardmis::kernelNeeds(built, s)),
       techniques(techniquesOf<K>(built, needs)),
-      world_{built.scene, built.geometry, built.accel, built.emitters},
+      world_{built.scene, built.geometry, built.accel, built.emitters, (needs & kNeedsTransparency) != 0},
       camera_(*built.scene.camera, built.scene.film),
       filter_(built.scene.film.filter, built.scene.film.filterWidth),
       sampler_(s.sampler, s.seed, s.seconds > 0 ? 64 : s.spp),

@@ -25,7 +25,7 @@ struct BuiltScene {
   Emitters emitters;
   Accel accel;
 
-  size_t lobes() const { return 1; }                // at most, of a surface
+  size_t lobes() const;  // that a surface may have, as far as each has a technique of its own
   std::vector<std::string> techniqueNames() const;  // in what is written
 };
 

@@ -12,25 +12,27 @@ namespace wardmis {
 
 // Radiance along one camera ray. taken: the pixel's samples of each technique so far.
 template <uint32_t N, size_t K>
-Rgb cameraSample(const KernelInput<K>& in, const Ray& ray, uint32_t pixelKey, uint32_t sample,
+Rgb cameraSample(const KernelInput<K>& in, const Ray& camera, uint32_t pixelKey, uint32_t sample,
                  const PixelFractions<K>* allocated, Pixel& pixel, uint32_t* taken, PilotPixel* pilot,
                  HitMoments<K>* moments, CandidateSums<K>* candidates, Counts& counts) {
   const RenderScene& world = in.scene;
   ++counts.cameraRays;
-  const Hit hit = world.accel.intersect(ray);
   const bool transparent = world.scene.film.transparent;
-  Rgb sum{0, 0, 0};
-  bool covered = hit.valid() || !transparent;
-  world.emitters.along(ray, hit.valid() ? hit.t : ray.tMax, !hit.valid() && !transparent, 0, [&](const EmitterHit& e) {
-    sum += e.radiance;
-    covered = true;
+  Rgb sum{0, 0, 0}, seenThrough{1, 1, 1};
+  bool covered = !transparent;
+  Ray ray = camera;
+  const Hit hit = trace<N, K>(world, ray, combine(pixelKey, ~sample), seenThrough, [&](float tMax, bool escaped) {
+    world.emitters.along(ray, std::min(tMax, ray.tMax), escaped && !transparent, 0, [&](const EmitterHit& e) {
+      sum += e.radiance * seenThrough;
+      covered = true;
+    });
   });
-  pixel.alpha += covered ? 1.0f : 0.0f;
+  pixel.alpha += covered || hit.valid() ? 1.0f : 0.0f;
   if (!hit.valid()) return sum;
 
-  const Interaction x = interact<N>(world.scene, world.geometry, ray, hit);
-  const Surface& s = x.surface;
-  sum += x.emission;
+  const auto x = interact<N, K>(world.scene, world.geometry, ray, hit);
+  const auto& s = x.surface;
+  sum += x.emission * seenThrough;
   if (sample == 0) pixel.depth = in.camera.depth(ray, hit.t);
   pixel.normal += x.frame.z;
   pixel.albedo += s.albedo();
@@ -69,7 +71,7 @@ Rgb cameraSample(const KernelInput<K>& in, const Ray& ray, uint32_t pixelKey, ui
     if (candidates != nullptr) candidate.emplace(in.candidates.of(mask));
     record.emplace(HitRecord<K>{moments, candidate ? &*candidate : nullptr});
   }
-  sum += estimate<N, K>(world, in.sampler, x, plan, counts, record ? &*record : nullptr, more);
+  sum += estimate<N, K>(world, in.sampler, x, plan, counts, record ? &*record : nullptr, more) * seenThrough;
   for (size_t i = 0; i < K; ++i) taken[i] += static_cast<uint32_t>(counts.samples[i] - before[i]);
   if constexpr ((N & kNeedsBounces) != 0) {
     const Fractions<K> n = record ? Mixture<K>(plan.fractions, plan.samples, plan.weights).n : Fractions<K>{};
@@ -79,11 +81,11 @@ Rgb cameraSample(const KernelInput<K>& in, const Ray& ray, uint32_t pixelKey, ui
       const Rgb value = followPath<N, K>(world, in.sampler, pixelKey,
                                          sample * static_cast<uint32_t>(plan.samples) + static_cast<uint32_t>(k), c,
                                          in.limits, counts);
-      sum += value;
+      sum += value * seenThrough;
       counts.following[c.technique] += counts.allRays() - rays;
       if (record)
         record->add(plan.integrand == Integrand::kSplit ? c.technique : 0, std::abs(luminance(value)) / c.scale, c.p, n,
-                    techniquesFor<K>(plan.integrand, c.technique), c.set);
+                    c.used, c.set);
     }
   }
   if (candidate) candidate->addTo(*candidates, in.cost);

@@ -41,6 +41,12 @@ struct PathState {
     if ((by & kTransmissionRay) != 0) count(next.transmission);
     return next;
   }
+  // Straight through a surface.
+  PathState passed() const {
+    PathState next = *this;
+    next.transparent = static_cast<uint8_t>(next.transparent + (next.transparent < 255));
+    return next;
+  }
 };
 
 // A quantity and its steps over one pixel.

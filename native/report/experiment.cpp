@@ -17,7 +17,7 @@ using nlohmann::json;
 
 std::string estimates(const RenderSettings& s) {
   const PathLimits limits = s.limits();
-  if (!limits.bounce()) return "direct light";
+  if (!limits.bounce(false)) return "direct light";
   std::string text = fmt::format("paths, depth {}", limits.depth);
   for (const auto& [kind, bounces] :
        {std::pair{"diffuse", limits.bounces[kDiffuseBounce]}, {"glossy", limits.bounces[kGlossyBounce]}})

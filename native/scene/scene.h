@@ -16,6 +16,7 @@
 #include "image/image.h"
 #include "math/vec.h"
 #include "program/program.h"
+#include "scene/closure.h"
 
 namespace wardmis {
 
@@ -34,24 +35,6 @@ struct Array {
   const T& operator[](size_t i) const { return data[i]; }
 };
 
-// One material input: a constant times, optionally, a value of the material's program, or a texture looked up at (a u +
-// b v + c, d u + e v + f).
-struct TextureUse {
-  int texture = -1;  // -1: none
-  int channel = 0;   // for scalars
-  float transform[6] = {1, 0, 0, 0, 1, 0};
-};
-struct ColorInput {
-  Rgb value{0, 0, 0};
-  TextureUse texture;
-  int result = -1;  // index into Program::results; -1: none
-};
-struct ScalarInput {
-  float value = 0;
-  TextureUse texture;
-  int result = -1;
-};
-
 struct Material {
   std::string name;
   WardVariant variant = WardVariant::kWardGmd;
@@ -61,11 +44,24 @@ struct Material {
   int normal = -1;     // index into Program::results: the shading normal in world space; -1: the mesh's
   float index = 0;     // for programs
   std::shared_ptr<const Program> program;
-  bool unlit = false;  // its emission stands for a colour that needs no light, and is none
+  bool unlit = false;             // its emission stands for a colour that needs no light, and is none
+  bool transparent = false;       // light may go straight through
+  std::vector<Closure> closures;  // in place of diffuse, specular, alphas, rotation and normal; of these, then, nothing
 
+  // Calls f(ColorInput&) or f(ScalarInput&) for each input; of a const material with const ones.
+  template <class Self, class F>
+  static void forEachInput(Self& m, F&& f) {
+    f(m.diffuse), f(m.specular), f(m.emission), f(m.alphaX), f(m.alphaY);
+    for (auto& c : m.closures) {
+      f(c.weight), f(c.rotation);
+      for (auto& input : c.colors) f(input);
+      for (auto& input : c.scalars) f(input);
+    }
+  }
   bool hasTextures() const {
-    return (diffuse.texture.texture & specular.texture.texture & emission.texture.texture & alphaX.texture.texture &
-            alphaY.texture.texture) != -1;
+    bool any = false;
+    forEachInput(*this, [&](const auto& input) { any = any || input.texture.texture >= 0; });
+    return any;
   }
 };
 

@@ -19,6 +19,12 @@ uint32_t needs(const Material& m) {
                              m.alphaX.texture.channel != m.alphaY.texture.channel || m.alphaX.result != m.alphaY.result;
     if (anisotropic) n |= kNeedsTangents;
   }
+  for (const Closure& c : m.closures) {
+    n |= kNeedsLobes;
+    if (mayBeDiffuse(c)) n |= kNeedsDiffuse;
+    if (mostLobes(c) > 0) n |= kNeedsSpecular;
+    if (mayBeTransparent(c)) n |= kNeedsTransparency;
+  }
   if (m.hasTextures() || (m.program && !m.program->textures.empty())) n |= kNeedsTextures;
   if (m.program) n |= kNeedsPrograms;
   return n;
@@ -92,11 +98,18 @@ void requireMemoryFor(const Scene& scene) {
 }
 
 std::string describe(uint32_t n) {
-  constexpr std::pair<uint32_t, const char*> kNames[] = {
-      {kNeedsDiffuse, "diffuse"},       {kNeedsSpecular, "specular"},       {kNeedsTextures, "textures"},
-      {kNeedsPrograms, "programs"},     {kNeedsBounces, "bounces"},         {kNeedsLightSampling, "lights"},
-      {kNeedsAllocation, "allocation"}, {kNeedsEnvironment, "environment"}, {kNeedsLens, "lens"},
-      {kNeedsTangents, "tangents"}};
+  constexpr std::pair<uint32_t, const char*> kNames[] = {{kNeedsDiffuse, "diffuse"},
+                                                         {kNeedsSpecular, "specular"},
+                                                         {kNeedsTextures, "textures"},
+                                                         {kNeedsPrograms, "programs"},
+                                                         {kNeedsBounces, "bounces"},
+                                                         {kNeedsLightSampling, "lights"},
+                                                         {kNeedsAllocation, "allocation"},
+                                                         {kNeedsEnvironment, "environment"},
+                                                         {kNeedsLens, "lens"},
+                                                         {kNeedsTangents, "tangents"},
+                                                         {kNeedsLobes, "lobes"},
+                                                         {kNeedsTransparency, "transparency"}};
   std::string s;
   for (const auto& [bit, text] : kNames)
     if ((n & bit) != 0) s += (s.empty() ? "" : ", ") + std::string(text);

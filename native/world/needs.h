@@ -15,15 +15,17 @@ enum Needs : uint32_t {
   kNeedsDiffuse = 1,
   kNeedsSpecular = 2,
   kNeedsBounces = 4,  // more than direct light
-  kKernelNeeds = 7,
-  kNeedsTextures = 8,  // a branch that is always taken alike costs nothing: no kernel of its own
+  kNeedsLobes = 8,    // other surfaces than Lambert's and one of Ward's
+  kKernelNeeds = 15,
+  kNeedsTextures = 16,  // a branch that is always taken alike costs nothing: no kernel of its own
   // ... and bits that decide what is set up, sampled and written
-  kNeedsLightSampling = 16,  // something emits that is worth aiming at
-  kNeedsAllocation = 32,     // techniques that share an integral: there is something to allocate
-  kNeedsEnvironment = 64,
-  kNeedsLens = 128,
-  kNeedsTangents = 256,
-  kNeedsPrograms = 512,  // a branch, too
+  kNeedsLightSampling = 32,  // something emits that is worth aiming at
+  kNeedsAllocation = 64,     // techniques that share an integral: there is something to allocate
+  kNeedsEnvironment = 128,
+  kNeedsLens = 256,
+  kNeedsTangents = 512,
+  kNeedsTransparency = 1024,  // surfaces that let light straight through
+  kNeedsPrograms = 2048,      // a branch, too
 };
 
 uint32_t needs(const Material& material);

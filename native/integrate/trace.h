@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rays through surfaces that let light straight through: a ray that is followed goes on at random, with the probability
+// that its surface is transparent; a shadow ray takes what all surfaces on its way leave.
+#pragma once
+
+#include "integrate/interaction.h"
+#include "math/random.h"
+#include "world/emitters.h"
+
+namespace wardmis {
+
+// The built scene, read-only, shared by all threads.
+struct RenderScene {
+  const Scene& scene;
+  const Geometry& geometry;
+  const Accel& accel;
+  const Emitters& emitters;
+  bool transparency = false;  // some surface lets light straight through
+};
+
+inline constexpr int kMostTransparent = 8;  // surfaces that a ray passes; Cycles' default
+
+namespace detail {
+
+// From where a ray goes on behind x, which it met at t.
+template <class X>
+float behind(const X& x, Vec3f direction, float t) {
+  constexpr float kGrazing = 1e-3f;
+  return t + std::max(2 * x.clearance / std::max(std::abs(dot(x.geometric, direction)), kGrazing), t * 1e-6f);
+}
+inline bool mayPass(const RenderScene& world, const Hit& hit) {
+  return world.scene.materials[static_cast<size_t>(world.geometry.shapes[hit.shape].material)].transparent;
+}
+
+}  // namespace detail
+
+// The surface at which a ray ends; its t is from the ray's origin, whatever it passed. weight: of what is seen there.
+// Before that, calls along(hit t, escaped) for each stretch between two surfaces, with `weight` as it is there.
+// key: of the random numbers.
+template <uint32_t N, size_t K, class Along>
+Hit trace(const RenderScene& world, Ray& ray, uint32_t key, Rgb& weight, Along&& along) {
+  for (uint32_t passed = 0;; ++passed) {
+    const Hit hit = world.accel.intersect(ray);
+    along(hit.t, !hit.valid());
+    if constexpr ((N & kNeedsLobes) == 0) return hit;
+    if (!world.transparency || !hit.valid() || !detail::mayPass(world, hit)) return hit;
+    const auto x = interact<N, K>(world.scene, world.geometry, ray, hit);
+    const Rgb through = x.surface.transparent;
+    const float q = std::clamp((through.x + through.y + through.z) / 3, 0.0f, 1.0f);
+    if (!(q > 0)) return hit;
+    if (toUnit(combine(key, 0x51ed270bu + passed)) >= q) {
+      weight = weight / (1 - q);
+      return hit;
+    }
+    weight = weight * through / q;
+    ray.tMin = detail::behind(x, ray.direction, hit.t);
+    ray.path = ray.path.passed();
+    if (passed >= kMostTransparent) {
+      weight = {0, 0, 0};
+      return {};
+    }
+  }
+}
+
+// What arrives of light at the end of a shadow ray.
+template <uint32_t N, size_t K>
+Rgb transmittance(const RenderScene& world, Ray ray) {
+  constexpr Rgb kAll{1, 1, 1}, kNone{0, 0, 0};
+  if constexpr ((N & kNeedsLobes) == 0) return world.accel.occluded(ray) ? kNone : kAll;
+  if (!world.transparency) return world.accel.occluded(ray) ? kNone : kAll;
+  Rgb left = kAll;
+  for (int passed = 0; passed <= kMostTransparent; ++passed) {
+    const Hit hit = world.accel.intersect(ray);
+    if (!hit.valid()) return left;
+    if (!detail::mayPass(world, hit)) return kNone;
+    const auto x = interact<N, K>(world.scene, world.geometry, ray, hit);
+    left *= x.surface.transparent;
+    if (!(maxComponent(left) > 0)) return kNone;
+    ray.tMin = detail::behind(x, ray.direction, hit.t);
+    if (!(ray.tMin < ray.tMax)) return left;
+    ray.path = ray.path.passed();
+  }
+  return kNone;
+}
+
+}  // namespace wardmis

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Surfaces of many lobes in whole renders: what is known of their light, and that no choice of techniques changes it.
+#include <gtest/gtest.h>
+
+#include "integrate/setup.h"
+#include "scenes.h"
+
+namespace wardmis {
+namespace {
+
+using namespace test;
+
+constexpr Rgb kWhite{1, 1, 1};
+
+Closure closure(ClosureType type, Rgb color = kWhite, float weight = 1) {
+  Closure c;
+  c.type = type;
+  if (type == ClosureType::kPrincipled3) c.version = 3;
+  c.weight.value = kWhite * weight;
+  for (const ClosureInput& i : info(type).colors) c.colors.push_back({kWhite * i.value, {}});
+  for (const ClosureInput& i : info(type).scalars) c.scalars.push_back({i.value, {}});
+  if (!c.colors.empty()) c.colors[0].value = color;
+  return c;
+}
+Closure with(Closure c, size_t scalar, float value) {
+  c.scalars[scalar].value = value;
+  return c;
+}
+Closure rough(Closure c, float alpha, Glossy distribution = Glossy::kMultiGgx) {
+  c.scalars[0].value = alpha;
+  if (c.type == ClosureType::kGlossy) c.scalars[1].value = alpha;
+  c.distribution = distribution;
+  return c;
+}
+
+Material material(std::vector<Closure> closures) {
+  Material m;
+  m.name = "lobes";
+  m.closures = std::move(closures);
+  m.transparent = std::any_of(m.closures.begin(), m.closures.end(), mayBeTransparent);
+  return m;
+}
+
+// A sphere, seen so that it fills half of the image.
+Scene ball(std::vector<Closure> closures, int resolution = 16) {
+  Scene scene;
+  scene.materials = {material(std::move(closures)), ward({0.5f, 0.5f, 0.5f}, {0, 0, 0}, 0.1f, WardVariant::kWardGmd)};
+  addSphere(scene, 24, 0);
+  lookFrom(scene, 0.7f, 1.25f, resolution);
+  return scene;
+}
+
+RenderSettings settings(Allocation allocation = Allocation::kEqual) {
+  RenderSettings s;
+  s.allocation = allocation;
+  s.spp = 64, s.threads = 2, s.maxDepth = 64;
+  return s;
+}
+
+double meanOf(const Scene& scene, const RenderSettings& s) {
+  Statistics statistics;
+  const FilmBuffer film = render(scene, s, statistics);
+  double sum = 0;
+  for (const Pixel& p : film.pixels) {
+    const Rgb c = film.mean(p);
+    EXPECT_TRUE(std::isfinite(c.x + c.y + c.z));
+    sum += double(luminance(c));
+  }
+  return sum / double(film.pixels.size());
+}
+
+// White surfaces that lose nothing look like the sky around them; .5 % are the noise and, of many facets' reflections,
+// the tables.
+TEST(Closures, WhiteOnesVanishInAWhiteSky) {
+  const std::vector<std::pair<const char*, std::vector<Closure>>> all = {
+      {"diffuse", {closure(ClosureType::kDiffuse)}},
+      {"rough diffuse", {with(closure(ClosureType::kDiffuse), 0, 0.5f)}},
+      {"translucent", {closure(ClosureType::kTranslucent)}},
+      {"transparent", {closure(ClosureType::kTransparent)}},
+      {"half transparent",
+       {closure(ClosureType::kTransparent, kWhite, 0.5f), closure(ClosureType::kDiffuse, kWhite, 0.5f)}},
+      {"mirror", {rough(closure(ClosureType::kGlossy), 0)}},
+      {"ggx", {rough(closure(ClosureType::kGlossy), 0.25f)}},
+      {"glass", {rough(closure(ClosureType::kGlass), 0)}},
+      {"mirror and diffuse",
+       {rough(closure(ClosureType::kGlossy, kWhite, 0.3f), 0), closure(ClosureType::kDiffuse, kWhite, 0.7f)}},
+      {"many",
+       {rough(closure(ClosureType::kGlossy, kWhite, 0.2f), 0), rough(closure(ClosureType::kGlossy, kWhite, 0.2f), 0.2f),
+        rough(closure(ClosureType::kGlass, kWhite, 0.2f), 0), closure(ClosureType::kDiffuse, kWhite, 0.2f),
+        closure(ClosureType::kTransparent, kWhite, 0.1f), closure(ClosureType::kTranslucent, kWhite, 0.1f)}}};
+  for (const auto& [name, closures] : all) {
+    Scene scene = ball(closures);
+    worldOf(scene).radiance = kWhite;
+    for (Allocation a : {Allocation::kEqual, Allocation::kAuto})
+      EXPECT_NEAR(meanOf(scene, settings(a)), 1, 0.005) << name;
+  }
+}
+
+// Allocations, weights and the kind of integrand share samples; the image is the same. 1 % is five of its errors.
+TEST(Closures, NoChoiceOfTechniquesChangesTheImage) {
+  std::vector<Closure> all = {closure(ClosureType::kPrincipled, {0.8f, 0.3f, 0.1f}, 0.6f),
+                              rough(closure(ClosureType::kGlass, kWhite, 0.2f), 0.2f),
+                              rough(closure(ClosureType::kGlossy, kWhite, 0.1f), 0),
+                              closure(ClosureType::kTransparent, kWhite, 0.1f)};
+  for (const auto& [scalar, value] : {std::pair{principled::kCoatWeight, 0.5f}, {principled::kSheenWeight, 0.3f}})
+    all[0].scalars[scalar].value = value;
+  Scene scene = ball(all);
+  addPlane(scene, 4, 1, -1.001f);
+  worldOf(scene).radiance = {0.2f, 0.2f, 0.2f};
+  Light area;
+  area.type = LightType::kArea;
+  area.emitted = {8, 8, 8};
+  area.sizeX = area.sizeY = 2;
+  area.toWorld.t = {1, 0, 3};
+  scene.lights = {area};
+  EXPECT_EQ(BuiltScene(scene, 2).techniqueNames().size(), 8u);
+  RenderSettings reference = settings();
+  reference.spp = 512, reference.maxDepth = 16;
+  const double expected = meanOf(scene, reference);
+  const auto check = [&](Allocation a, Integrand integrand, std::optional<Weights> weights) {
+    RenderSettings s = settings(a);
+    s.spp = 256, s.maxDepth = 16, s.integrand = integrand, s.weights = weights, s.seed = 1;
+    EXPECT_NEAR(meanOf(scene, s) / expected, 1, 0.01) << name(a) << ' ' << name(integrand);
+  };
+  for (Allocation a :
+       {Allocation::kEqual, Allocation::kSecondMoment, Allocation::kVariance, Allocation::kAlbedo, Allocation::kAuto})
+    for (Integrand i : {Integrand::kSplit, Integrand::kJoint}) check(a, i, {});
+  for (Weights w : {Weights::kNonbalance, Weights::kPower, Weights::kMaximum})
+    check(Allocation::kEqual, Integrand::kJoint, w);
+}
+
+// The same surface by closures and in the short form: the same expectation. 1 % is five of its errors.
+TEST(Closures, WardsLobeIsThatOfTheShortForm) {
+  Scene scene = ball({with(with(closure(ClosureType::kWard, {0.5f, 0.4f, 0.3f}), 0, 0.2f), 1, 0.2f),
+                      closure(ClosureType::kDiffuse, {0.2f, 0.3f, 0.4f})});
+  addCosineSky(scene, 64);
+  RenderSettings s = settings();
+  const double closures = meanOf(scene, s);
+  scene.materials[0] = ward({0.2f, 0.3f, 0.4f}, {0.5f, 0.4f, 0.3f}, 0.2f, WardVariant::kWardGmd);
+  EXPECT_NEAR(closures / meanOf(scene, s), 1, 0.01);
+}
+
+// Light through sheets: a shadow ray passes up to eight, and colours multiply.
+TEST(Closures, SheetsLetLightThrough) {
+  for (int sheets : {1, 2, 8, 9}) {
+    Scene scene = diffusePlane(4);
+    scene.materials.push_back(material({closure(ClosureType::kTransparent, {0.5f, 0.5f, 0.5f})}));
+    for (int i = 1; i <= sheets; ++i) {
+      addPlane(scene, 1000, 1, 0.5f * static_cast<float>(i));
+      scene.instances.back().visibility &= static_cast<uint8_t>(~kSeenByCamera);  // which would pass at random
+    }
+    Light sun;
+    sun.type = LightType::kSun;
+    sun.emitted = {1, 1, 1};
+    scene.lights = {sun};
+    RenderSettings s = settings();
+    s.spp = 4, s.integrator = Integrator::kDirect;
+    const double through = sheets > 8 ? 0 : std::pow(0.5, sheets);
+    EXPECT_NEAR(meanOf(scene, s), through / kPi<double>, 1e-6 + 1e-5 * through) << sheets;
+  }
+}
+
+// As many techniques as there may be lobes, and no more.
+TEST(Closures, HaveTheTechniquesThatTheyNeed) {
+  const auto names = [](std::vector<Closure> closures) {
+    return BuiltScene(ball(std::move(closures)), 2).techniqueNames();
+  };
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(names({closure(ClosureType::kDiffuse)}), (Names{"lobe", "cosine", "light"}));
+  EXPECT_EQ(names({closure(ClosureType::kPrincipled)}), (Names{"lobe", "cosine", "light"}));
+  EXPECT_EQ(names({closure(ClosureType::kGlass)}), (Names{"lobe 1", "lobe 2", "lobe 3", "cosine", "light"}));
+}
+
+}  // namespace
+}  // namespace wardmis
