@@ -24,6 +24,7 @@ SIGNATURES = (
     (b"\xff\xd8\xff", "image/jpeg"),
     (b"\x76\x2f\x31\x01", "image/x-exr"),
 )
+EXR_BEGINS = SIGNATURES[2][0]
 COLOR_SPACES = {"sRGB": "sRGB", "Linear": "linear", "Linear Rec.709": "linear", "Non-Color": "linear", "Raw": "linear"}
 DATA = {"Non-Color", "Raw"}  # no colours: alpha means nothing to them
 PNG_TYPE, GREY_WITH_ALPHA = 25, 4  # where a PNG says what its pixels are, and one such kind
@@ -86,8 +87,15 @@ class Picture:
 
     @property
     def _is_blenders(self) -> bool:
-        """Whether Cycles gets Blender's pixels, which loading has made linear and multiplied by alpha, not those of the file."""
-        return bool(self.image.packed_files) and self.image.is_float and self.image.alpha_mode == "STRAIGHT"
+        """Whether Cycles gets Blender's pixels, not those of the packed file, and loading has changed these.
+
+        It makes floats linear, and multiplies straight ones by alpha; it divides bytes that are said to be multiplied.
+        """
+        if not self.image.packed_files:
+            return False
+        if self.image.is_float and self._file(4) == EXR_BEGINS:
+            return bool(self.image.alpha_mode == "STRAIGHT")
+        return bool(self.image.is_float or self.image.alpha_mode == "PREMUL")
 
     @property
     def is_grey_with_alpha(self) -> bool:

@@ -609,3 +609,45 @@ def alpha_of_an_unlike_node():
         return add(tree, "MixRGB", Fac=alpha.outputs["Alpha"], **inputs).outputs[0]
 
     sheet(painted(build))
+
+
+def packed(mode, depth="8", settings=None, output="Color"):
+    """A file that is packed, whose alpha Blender has taken as `mode` says: Cycles is given what Blender holds."""
+    picture = saved_image(f"packed-{mode}-{depth}", with_alpha(), depth=depth)
+    picture.alpha_mode = mode
+    picture.pack()
+    shows(picture, settings, output)
+
+
+@scene
+def packed_premultiplied():
+    packed("PREMUL")
+
+
+@scene
+def packed_straight():
+    packed("STRAIGHT")
+
+
+@scene
+def packed_premultiplied_16_bits():
+    packed("PREMUL", "16")
+
+
+@scene
+def packed_straight_16_bits():
+    packed("STRAIGHT", "16")
+
+
+@scene
+def packed_premultiplied_alpha():
+    packed("PREMUL", output="Alpha")
+
+
+@scene
+def generated_premultiplied():
+    """Of no file: nothing divides it."""
+    picture = bpy.data.images.new("generated", 8, 8, alpha=True)
+    picture.pixels.foreach_set(with_alpha().astype("f").ravel())
+    picture.alpha_mode = "PREMUL"
+    shows(picture)
