@@ -217,7 +217,13 @@ class _Render:
                 self._handle(event)
             if self._stopped():
                 raise _Stopped
-        for event in renderer.finish():
+        try:
+            events = renderer.finish()
+        except RendererError as error:
+            if renderer.was_replaced():  # by an add-on that is installed anew, which is to stop the render
+                raise _Stopped from error
+            raise
+        for event in events:
             self._handle(event)
         if not self.image_path.is_file():
             doubt = "" if self.started else "; it never said that it started, so that it may be another program"

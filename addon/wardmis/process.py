@@ -63,6 +63,15 @@ def _make_executable(path: Path) -> None:
             ) from error
 
 
+def _identity(path: str) -> Any:
+    """What a file that is written anew does not share with the one before; None: there is none."""
+    try:
+        status = os.stat(path)
+    except OSError:
+        return None
+    return status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns
+
+
 def version(path: Path) -> str:
     """What `wardmis --version` says."""
     try:
@@ -89,6 +98,7 @@ class Renderer:
         """`name` is what messages call it."""
         self.path = command[0]
         self._name = name
+        self._file = _identity(self.path)
         self._events: queue.SimpleQueue[dict[str, Any]] = queue.SimpleQueue()
         self._tail: deque[str] = deque(maxlen=6)  # of what it said besides events
         self._error: dict[str, Any] | None = None
@@ -141,6 +151,10 @@ class Renderer:
 
     def exit_code(self) -> int | None:
         return self._process.poll()
+
+    def was_replaced(self) -> bool:
+        """Whether its file is another one than at its start: Blender installs over it, and the process may then crash."""
+        return _identity(self.path) != self._file
 
     def interrupt(self) -> None:
         """Asks it to end with what it has done so far, as Ctrl-C does; returns at once."""

@@ -4,15 +4,21 @@
 In a window Blender renders in a thread of its own. An engine that is unregistered meanwhile is freed under it, and Blender crashes.
 Blender is done with the engine when it calls the handlers of the render's end; until then it may be evaluating the scene for it, be in
 its render(), or be about to call that for the next view layer or frame.
+
+That of any other engine, too: with it Blender frees all engines, as Reload Scripts does with Cycles before it comes to this add-on.
+So before an add-on with an engine is disabled, the render is ended.
 """
 
 from __future__ import annotations
 
 import contextlib
+import functools
 import threading
 import time
+from collections.abc import Callable
 from typing import Any
 
+import addon_utils  # type: ignore[import-not-found]
 import bpy
 
 ENGINE = "WARDMIS"
@@ -82,15 +88,48 @@ def _on_end(*_: Any) -> None:
     _thread = None
 
 
+def _brings_an_engine(module: str) -> bool:
+    return any(engine.__module__.split(".")[: module.count(".") + 1] == module.split(".") for engine in _engines())
+
+
+def _engines() -> list[type]:
+    engines, found = [bpy.types.RenderEngine], []
+    while engines:
+        engines += (more := engines.pop().__subclasses__())
+        found += more
+    return found
+
+
+def _ending_before(disable: Callable[..., Any]) -> Callable[..., Any]:
+    """Blender's function that disables an add-on, with an end to the render before one with an engine goes."""
+
+    @functools.wraps(disable)
+    def disable_after_end(module_name: str, *arguments: Any, **named: Any) -> Any:
+        if _brings_an_engine(module_name):
+            end()
+        return disable(module_name, *arguments, **named)
+
+    return disable_after_end
+
+
+_disable: Callable[..., Any] | None = None  # Blender's own, while ours is in its place
+
 _HANDLERS = (("render_init", _on_start), ("render_complete", _on_end), ("render_cancel", _on_end))
 
 
 def register() -> None:
+    global _disable
     for name, handler in _HANDLERS:
         getattr(bpy.app.handlers, name).append(handler)
+    _disable = addon_utils.disable
+    addon_utils.disable = _ending_before(_disable)
 
 
 def unregister() -> None:
+    global _disable
     for name, handler in _HANDLERS:
         with contextlib.suppress(ValueError):
             getattr(bpy.app.handlers, name).remove(handler)
+    if getattr(addon_utils.disable, "__wrapped__", None) is _disable:  # nobody else's is around it
+        addon_utils.disable = _disable
+    _disable = None

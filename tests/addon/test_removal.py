@@ -11,19 +11,20 @@ import tempfile
 import unittest
 
 from support import RenderTest
+from wardmis.process import Renderer
 
 REMOVE = "bpy.ops.preferences.addon_disable(module='wardmis')"
 
 # a render as F12 begins it, in Blender's own thread; an exit code of 0 only from the very end
-IN_A_WINDOW = f"""
+IN_A_WINDOW = """
 import os
 preferences = bpy.context.preferences.view
 preferences.show_splash, preferences.render_display_type = False, "NONE"
 scene.render.engine = "WARDMIS"
 steps = [
     lambda: bpy.ops.render.render("INVOKE_DEFAULT", animation=True),
-    lambda: {REMOVE},
-    lambda: bpy.ops.preferences.addon_enable(module='wardmis'),
+    lambda: REMOVE,
+    lambda: BRING_BACK,
     lambda: print("alive", hasattr(scene, "wardmis"), bpy.app.is_job_running("RENDER"), flush=True),
     lambda: os._exit(0),
 ]
@@ -59,9 +60,21 @@ bpy.app.handlers.render_cancel.append(lambda *_: print("cancelled", flush=True))
 
     @unittest.skipUnless(shutil.which("Xvfb"), "there is no Xvfb")
     def test_in_a_window(self):
+        self.check_in_a_window(REMOVE, "bpy.ops.preferences.addon_enable(module='wardmis')")
+
+    @unittest.skipUnless(shutil.which("Xvfb"), "there is no Xvfb")
+    def test_scripts_are_reloaded(self):
+        self.check_in_a_window("bpy.ops.script.reload()", "None")
+
+    @unittest.skipUnless(shutil.which("Xvfb"), "there is no Xvfb")
+    def test_another_engine_goes(self):
+        """With which Blender frees all of them."""
+        self.check_in_a_window("bpy.ops.preferences.addon_disable(module='cycles')", "None")
+
+    def check_in_a_window(self, remove, bring_back):
         with display() as name:
             run = self.run_blender(
-                IN_A_WINDOW,
+                IN_A_WINDOW.replace("REMOVE", remove).replace("BRING_BACK", bring_back),
                 "--window-geometry",
                 *["0", "0", "640", "480"],
                 fake="slow",
@@ -72,6 +85,19 @@ bpy.app.handlers.render_cancel.append(lambda *_: print("cancelled", flush=True))
         self.assertEqual(run.code, 0, run.output)
         self.assertIn("alive True False", run.output)
         self.assertEqual(len(run.calls), 1, "the animation went on without the add-on")
+
+
+class Replaced(unittest.TestCase):
+    """Blender 3.4 writes an add-on over the one whose renderer runs."""
+
+    def test_renderer(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = shutil.copy(shutil.which("sleep"), folder)
+            with Renderer([path, "60"]) as renderer:
+                self.assertFalse(renderer.was_replaced())
+                os.unlink(path)
+                shutil.copy(shutil.which("true"), path)
+                self.assertTrue(renderer.was_replaced())
 
 
 @contextlib.contextmanager
