@@ -19,8 +19,8 @@ std::vector<std::vector<float>> proportions(size_t m, size_t most) {
   std::vector<std::vector<float>> list;
   std::vector<size_t> digits(m, 0);
   while (true) {
-    std::vector<float> a;
-    for (size_t digit : digits) a.push_back(kLevels[digit]);
+    std::vector<float> a(m);
+    std::transform(digits.begin(), digits.end(), a.begin(), [&](size_t digit) { return kLevels[digit]; });
     if (*std::min_element(a.begin(), a.end()) == 1) list.push_back(a);
     size_t i = 0;
     while (i < m && ++digits[i] == std::size(kLevels)) digits[i++] = 0;

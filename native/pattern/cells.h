@@ -73,7 +73,7 @@ class Cells {
   Rgb color(const Offset<D>& offset) const {
     if constexpr (D > 1) {
       if (integer_) {
-        std::array<int, (D > 3 ? D : 3)> key{};
+        std::array<int, std::max(D, 3)> key{};
         const auto i = index(offset);
         for (int d = 0; d < D; d++) key[d] = i[d];
         const auto u = pcgToUnits(key);
