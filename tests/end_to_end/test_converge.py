@@ -658,7 +658,7 @@ class Converge(CommandTest):
         self.assertAlmostEqual(cost["ns_per_sample"], 1e9 * run["checkpoints"][-1]["cpu"] / samples, places=3)
         self.assertAlmostEqual(
             cost["rays_per_path"],
-            np.sum([r["rays"] for r in runs["equal"]]) / np.sum([r["rays"][0] for r in runs["equal"]]),
+            1 + np.sum([r["rays"] for r in runs["equal"]]) / np.sum([r["camera_rays"] for r in runs["equal"]]),
             places=9,
         )
         error = np.mean([run["checkpoints"][-1][key] for run in runs["equal"]]) - floor
