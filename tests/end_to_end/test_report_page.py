@@ -432,7 +432,7 @@ class Page(unittest.TestCase):
         self.assertIn("no value", self.point_at(0.5, 0.004))
         self.assertTrue(self.run_js("return document.querySelector('.viewer input[type=range]').disabled"))
         self.show("allocation")
-        self.assertRegex(self.point_at(0.5, 0.5), r"lobe [\d.]+ % +cosine 14\.9 % +light")
+        self.assertRegex(self.point_at(0.5, 0.5), r"lobes [\d.]+ % +cosine 14\.9 % +light")
 
     def test_everything_is_one_list(self):
         self.open()
