@@ -156,7 +156,7 @@ inline void addVelvet(int version, Rgb weight, float sigma, Add&& add) {
 // Sheen of fibres (since 4.0): its albedo is in the weight. Returns the albedo, 0 where there is no lobe.
 template <class Add>
 inline float addFibres(Rgb weight, float roughness, float cosThetaO, uint8_t frame, Add&& add) {
-  const std::array<float, 2> at{cosThetaO, std::clamp(roughness, 1e-3f, 1.0f)};
+  const std::array<float, 2> at{std::sqrt(std::max(cosThetaO, 0.0f)), std::clamp(roughness, 1e-3f, 1.0f)};
   const auto read = [&](const auto* table, float unit) { return lookUp<fibre::kSteps, 2>(table, at) * (65535 / unit); };
   const float albedo = read(fibre::kAlbedo, 65535);
   Lobe l;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lobes of fibres (sheen.h) over the cosine of the view (fastest) and roughness, each from 0 to 1 in 31 even steps: the
-// two numbers of the transformation and the albedo; 0 where there is no lobe. Made by tools/fibre_table.py.
+// Lobes of fibres (sheen.h) over the root of the view's cosine (fastest) and roughness, each from 0 to 1 in 31 even
+// steps: the two numbers of the transformation, and the albedo; 0 where there is no lobe. Measured and fitted by
+// tools/fibre_table.py.
 #pragma once
 
 #include <cstdint>

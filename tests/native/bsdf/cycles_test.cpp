@@ -119,6 +119,7 @@ double allowed(int version, const json& s) {
     if (distribution == "BECKMANN") return 0.02;  // normals by a table
     return inputs.value("ior", 1.5) < 1 ? 0.013 : 0.002;
   }
+  if (node == "sheen") return 0.003;                  // between the nodes of a table of our own
   return distribution == "BECKMANN" ? 0.004 : 0.002;  // density by the same approximate masking as f
 }
 
