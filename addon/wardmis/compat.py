@@ -210,6 +210,10 @@ def uses_nodes(owner: Any) -> bool:
     return owner.node_tree is not None and (VERSION >= (5, 0, 0) or owner.use_nodes)
 
 
+# A Background node in a lamp shines as an Emission does; before it gave nothing.
+BACKGROUND_LIGHTS_LAMPS = VERSION >= (4, 0, 0)
+
+
 # --- nodes ----------------------------------------------------------------------------------------------------------
 
 # Whose formulas this Blender's Cycles has: 3.4's (3), 4.3's (4) or 5.2's (5), which docs/scene-format.md calls `version`.

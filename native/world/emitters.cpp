@@ -157,8 +157,13 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Env
         if (!l.tilted) l.axis = l.normal;
         l.area = length(n) * (light.ellipse ? kPif : 4.0f);
         l.spread = light.spread < kPif - 1e-4f;
-        l.spreadHalf = 0.5f * light.spread;
-        l.spreadTan = l.spread ? std::tan(l.spreadHalf) : 0;
+        if (l.spread) {
+          const double h = 0.5 * light.spread;
+          l.spreadTan = std::tan(static_cast<float>(h));
+          // of a narrow one the two are nearly equal: by their series
+          const double difference = h < 0.01 ? h * h * h * (1.0 / 3 + h * h * (2.0 / 15)) : std::tan(h) - h;
+          l.spreadScale = static_cast<float>(1 / difference);
+        }
         w = intensity * l.area * kPif;
         break;
       }
@@ -268,8 +273,8 @@ Rgb Emitters::profile(const Lamp& lamp, Vec3f d) {
   if (lamp.spread) {  // area light of limited spread: Cycles' formula
     const float cosA = dot(d, lamp.axis);
     if (!(cosA > 0)) return {0, 0, 0};
-    const float tanA = std::sqrt(std::max(0.0f, 1 - cosA * cosA)) / cosA;
-    f *= std::max(0.0f, (lamp.spreadTan - tanA) / (lamp.spreadTan - lamp.spreadHalf));
+    const float tanA = length(cross(d, lamp.axis)) / cosA;  // its sine from the cosine is nothing below 3e-4
+    f *= std::max(0.0f, (lamp.spreadTan - tanA) * lamp.spreadScale);
   }
   if (lamp.spot) {
     const Vec3f local = lamp.toLocal.inverseVector(d);

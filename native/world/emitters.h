@@ -80,7 +80,7 @@ class Emitters {
     float oneMinusCos = 0;       // sun: 1 - cos of the half angle
     Rgb emitted{};               // radiance; point intensity; sun irradiance
     // angular profile
-    float spreadTan = 0, spreadHalf = 0;  // spread < pi
+    float spreadTan = 0, spreadScale = 0;  // spread < pi: t, and 1 / (t - h)
     bool spread = false, spot = false, cosine = false;
     float cosHalf = 0, blend = 0;
     Affine toLocal{};  // spot: linear part only

@@ -66,6 +66,7 @@ class Lights(SceneTest):
         area = 6 * np.linalg.norm(np.cross(axes[:, 0], axes[:, 1]))
         self.assertLess(area, 5.9 * np.prod(np.linalg.norm(axes[:, :2], axis=0)))
         self.assertAlmostEqual(light.emission, 100 / ((math.pi if NEW else 4) * area), 4)
+        self.assertIn("its sides are not at right angles", self.gather().notes[0])
 
     def test_cone_of_a_sheared_spot(self):
         """Round until 4.0, then as the axes have it."""

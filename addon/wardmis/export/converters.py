@@ -7,6 +7,7 @@ from collections.abc import Callable
 from hashlib import sha256
 from typing import Any
 
+import bpy
 import numpy as np
 
 from . import functions as f
@@ -176,7 +177,32 @@ def _spectral(function: Callable[[float], tuple[float, float, float]]) -> Callab
 
 def _light_falloff(use: NodeUse, output: Any) -> Value | None:
     """Light falls off with the square of the distance; nothing else is possible here."""
-    return read(use, "Strength") if output.name == "Quadratic" else None
+    if output.name != "Quadratic":
+        return None
+    if not read(use, "Smooth").is_black:
+        use.note("smooths its falloff, which is not supported; its light is brighter near the lamp")
+    return read(use, "Strength")
+
+
+WITHOUT_IES = 100.0  # what Cycles has instead of a file
+MOST_OF_IES = 1 << 20  # bytes, within which the first keyword stands
+
+
+def _ies(use: NodeUse, _output: Any) -> Value | None:
+    """None: what a file says depends on the direction."""
+    node = use.node
+    if node.mode == "INTERNAL":
+        text = "" if node.ies is None else node.ies.as_string()
+    else:
+        try:
+            with open(bpy.path.abspath(node.filepath), encoding="latin-1") as file:
+                text = file.read(MOST_OF_IES)
+        except OSError:
+            text = ""
+    if "\nTILT=" in text:
+        return None
+    use.note("has no IES file; its strength counts a hundredfold, as in Cycles")
+    return calculator(use).multiply(read(use, "Strength"), constant(WITHOUT_IES))
 
 
 def _light_path(use: NodeUse, output: Any) -> Value | None:
@@ -231,6 +257,7 @@ CONVERTERS.update(
         "ShaderNodeCombineHSV": _combine,
         "ShaderNodeCombineXYZ": _combine,
         "ShaderNodeLightFalloff": _light_falloff,
+        "ShaderNodeTexIES": _ies,
         "ShaderNodeLightPath": _light_path,
         "ShaderNodeBlackbody": _spectral(blackbody),
         "ShaderNodeWavelength": _spectral(wavelength),

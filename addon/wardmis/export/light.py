@@ -20,6 +20,8 @@ from .shader import shader
 from .tree import Owner, output_use
 from .value import NotFinite
 
+SHEARED = 1e-3  # the cosine between an area light's sides, from which on they count as not orthogonal
+
 
 def export_light(
     light: Any, name: str, matrix: np.ndarray, hidden_from: frozenset[str], context: ExportContext
@@ -38,7 +40,7 @@ def export_light(
     data = LightData(name, light.type.lower(), matrix, color, 0.0, hidden_from=hidden_from)
     data.shadow = compat.light_casts_shadow(light)
     data.max_bounces = compat.max_bounces(light)
-    {"AREA": _area, "POINT": _point, "SPOT": _spot, "SUN": _sun}[light.type](light, power, data)
+    {"AREA": _area, "POINT": _point, "SPOT": _spot, "SUN": _sun}[light.type](light, power, data, context)
     if math.isinf(data.emission):
         context.note(f"light '{light.name}': its area is zero, so that it gives no light; set a size or a scale")
         return None
@@ -66,7 +68,7 @@ def _node_factor(light: Any, context: ExportContext) -> Rgb:
     return (r, g, b)
 
 
-def _area(light: Any, power: float, data: LightData) -> None:
+def _area(light: Any, power: float, data: LightData, context: ExportContext) -> None:
     data.shape = "ellipse" if light.shape in {"DISK", "ELLIPSE"} else "rectangle"
     data.size = (light.size, light.size_y if light.shape in {"RECTANGLE", "ELLIPSE"} else light.size)
     data.spread = light.spread
@@ -76,12 +78,17 @@ def _area(light: Any, power: float, data: LightData) -> None:
     if area == 0:
         data.emission = math.inf
         return
+    if abs(float(x @ y)) > SHEARED * float(np.linalg.norm(x) * np.linalg.norm(y)):
+        context.note(
+            f"light '{light.name}': its parents shear it, so that its sides are not at right angles; what Cycles shows of such a light "
+            "depends on how it samples it, and differs. Clear the shear to compare them"
+        )
     # Cycles takes the axes for orthogonal, and what it so calls the area for that of the light
     power *= 1.0 if compat.light_is_normalized(light) else float(np.linalg.norm(x) * np.linalg.norm(y)) * shape
     data.emission = power / (area * (math.pi if compat.LIGHTS_OF_4_0 else 4.0))
 
 
-def _point(light: Any, power: float, data: LightData) -> None:
+def _point(light: Any, power: float, data: LightData, _context: ExportContext) -> None:
     data.radius = light.shadow_soft_size
     data.facing = compat.light_has_soft_falloff(light)
     data.emission = power / (4 * math.pi)
@@ -89,8 +96,8 @@ def _point(light: Any, power: float, data: LightData) -> None:
         data.emission *= math.pi * data.radius**2
 
 
-def _spot(light: Any, power: float, data: LightData) -> None:
-    _point(light, power, data)
+def _spot(light: Any, power: float, data: LightData, context: ExportContext) -> None:
+    _point(light, power, data, context)
     data.angle = light.spot_size
     data.blend = light.spot_blend
     data.cosine = not compat.LIGHTS_OF_4_0
@@ -99,7 +106,7 @@ def _spot(light: Any, power: float, data: LightData) -> None:
         data.matrix[:3, :3] = Vector(data.matrix[:3, 2]).to_track_quat("Z", "Y").to_matrix()
 
 
-def _sun(light: Any, power: float, data: LightData) -> None:
+def _sun(light: Any, power: float, data: LightData, _context: ExportContext) -> None:
     data.angle = light.angle
     data.emission = power
     half = light.angle / 2

@@ -43,7 +43,11 @@ def shader(use: NodeUse, key: str | int) -> Surface:
         return Surface(emission=read(use, key))
     origin = source.use
     assert origin is not None
-    converter = (SHADERS if origin.owner.kind == "material" else LIGHT_SHADERS).get(origin.node.bl_idname)
+    kind = origin.node.bl_idname
+    converter = (SHADERS if origin.owner.kind == "material" else LIGHT_SHADERS).get(kind)
+    if kind == "ShaderNodeBackground" and origin.owner.kind == "light" and not compat.BACKGROUND_LIGHTS_LAMPS:
+        origin.note("gives no light in a lamp, in Cycles of this Blender either; use Emission")
+        return Surface()
     if converter is None and origin.owner.kind == "material":
         origin.note("is not supported; rendered as magenta")
         return FALLBACK

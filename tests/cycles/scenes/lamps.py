@@ -269,3 +269,26 @@ def touching():
     lamp("POINT", (-2.4, -1, 0), 30, RED, shadow_soft_size=0.4)
     made = lamp("AREA", (2.2, -1, 0.3), 30, GREEN, shape="SQUARE", size=0.6)
     made.rotation_euler = math.pi / 2, 0, 1
+
+
+def with_nodes(build):
+    """A lamp whose output `build(tree)` feeds."""
+    things()
+    made = lamp("POINT", (-1, -2, 4), 100, shadow_soft_size=0.1)
+    made.data.use_nodes = True
+    tree = made.data.node_tree
+    output = next(n for n in tree.nodes if n.bl_idname == "ShaderNodeOutputLight")
+    tree.links.new(build(tree), output.inputs["Surface"])
+    sky((0.1, 0.1, 0.1))
+
+
+@scene
+def background_node():
+    """Which shines in some Blenders."""
+    with_nodes(lambda tree: add(tree, "Background", Color=(0.2, 0.9, 0.4, 1)).outputs[0])
+
+
+@scene
+def ies_without_file():
+    """Which counts as 100."""
+    with_nodes(lambda tree: add(tree, "Emission", Strength=add(tree, "TexIES", Strength=0.02).outputs[0]).outputs[0])

@@ -284,6 +284,32 @@ TEST(Irradiance, ShearedAreaLights) {
     }
 }
 
+// Of a spread so narrow that its tangent and its angle are one number in single precision. The lamp is small, so that
+// all of it is seen from where the light falls.
+TEST(Irradiance, NarrowAreaLights) {
+  for (const float spread : {0.3f, 0.02f, 0.005f, 0.001f}) {
+    Scene scene = plane();
+    Light l;
+    l.type = LightType::kArea;
+    const float distance = 12 / spread;
+    l.sizeX = l.sizeY = 0.24f;
+    l.emitted = {2, 2, 2};
+    l.spread = spread;
+    l.toWorld.t = {0, 0, distance};
+    scene.lights = {l};
+    const double h = spread / 2.0, difference = h * h * h / 3 + 2 * std::pow(h, 5) / 15 + 17 * std::pow(h, 7) / 315;
+    double sum = 0;
+    constexpr int kSteps = 100;
+    for (int i = 0; i < kSteps; ++i)
+      for (int j = 0; j < kSteps; ++j) {
+        const double u = ((i + 0.5) / kSteps - 0.5) * l.sizeX, v = ((j + 0.5) / kSteps - 0.5) * l.sizeY;
+        sum += (std::tan(h) - std::hypot(u, v) / distance) / difference;
+      }
+    const double irradiance = 2 * sum / (kSteps * kSteps) * l.sizeX * l.sizeY / (double(distance) * distance);
+    EXPECT_NEAR(radiance(scene) / (irradiance / kPid), 1, 3e-3) << spread;
+  }
+}
+
 TEST(Irradiance, EmissiveMesh) {
   Scene scene = plane();
   Material m;
