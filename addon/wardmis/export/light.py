@@ -21,6 +21,7 @@ from .tree import Owner, output_use
 from .value import NotFinite
 
 SHEARED = 1e-3  # the cosine between an area light's sides, from which on they count as not orthogonal
+WIDE = 1e-4  # a spread that is nearer to 180 degrees is none
 
 
 def export_light(
@@ -78,14 +79,19 @@ def _area(light: Any, power: float, data: LightData, context: ExportContext) -> 
     if area == 0:
         data.emission = math.inf
         return
-    if abs(float(x @ y)) > SHEARED * float(np.linalg.norm(x) * np.linalg.norm(y)):
+    if abs(float(x @ y)) > SHEARED * float(np.linalg.norm(x) * np.linalg.norm(y)) and _is_of_no_shape(data):
         context.note(
-            f"light '{light.name}': its parents shear it, so that its sides are not at right angles; what Cycles shows of such a light "
-            "depends on how it samples it, and differs. Clear the shear to compare them"
+            f"light '{light.name}': its parents shear it, so that its axes are not at right angles; Cycles' picture is not that of "
+            "this shape. Clear the shear to compare them"
         )
     # Cycles takes the axes for orthogonal, and what it so calls the area for that of the light
     power *= 1.0 if compat.light_is_normalized(light) else float(np.linalg.norm(x) * np.linalg.norm(y)) * shape
     data.emission = power / (area * (math.pi if compat.LIGHTS_OF_4_0 else 4.0))
+
+
+def _is_of_no_shape(sheared: LightData) -> bool:
+    """Whether Cycles takes a sheared lamp's points by axes that it holds for orthogonal: they then lie elsewhere for each point that is lit."""
+    return sheared.shape == "rectangle" or (compat.LIGHTS_OF_4_0 and sheared.spread < math.pi - WIDE)
 
 
 def _point(light: Any, power: float, data: LightData, _context: ExportContext) -> None:
