@@ -54,6 +54,9 @@ class Nodes:
         """5 + a tenth of a number: negative ones, too, can be seen."""
         return self("Math", socket, 0.1, 5.0, operation="MULTIPLY_ADD").outputs[0]
 
+    def lifted_color(self, socket: Any) -> Any:
+        return self("VectorMath", socket, (0.1, 0.1, 0.1), (5, 5, 5), operation="MULTIPLY_ADD").outputs[0]
+
     def group(self, sockets: dict[str, tuple[str, str]], build: Callable[[Nodes, Any, Any], None]) -> Any:
         """A group node; `sockets`: name -> (INPUT or OUTPUT, type). `build` gets the inside and its two ends."""
         tree = bpy.data.node_groups.new("Group", "ShaderNodeTree")
@@ -245,6 +248,15 @@ def functions() -> Iterator[tuple[str, Callable[[Nodes], Any]]]:
     a, b = (0.8, 0.3, 0.1), (0.2, 0.6, 0.9)
     for blend in enum("MixRGB", "blend_type"):
         yield f"mix {blend}", lambda n, x=blend: out(n("MixRGB", 0.4, a, b, blend_type=x))
+        for i, (first, second) in enumerate(
+            [((0.8, -0.3, 0.1), (-0.2, 0, 0.3)), ((0, 1.5, -0.5), (1.2, 0, 0.5)), ((0.8, 0.3, 0.1), (0, 0, 0))]
+        ):
+            yield (
+                f"mix {blend} of extremes {i}",
+                lambda n, x=blend, y=first, z=second: n.lifted_color(
+                    out(n("MixRGB", 0.4, n.vector(*y), n.vector(*z), blend_type=x))
+                ),
+            )
     for blend in ("MIX", "DODGE", "VALUE", "LINEAR_LIGHT"):
 
         def mix(n: Nodes, blend: str = blend) -> Any:
@@ -324,21 +336,24 @@ def functions() -> Iterator[tuple[str, Callable[[Nodes], Any]]]:
 
     yield "RGB curve", curve("RGBCurve", 0.8, RGB)
     yield "float curve", curve("FloatCurve", 0.8, 0.2)
+    zero, u, v, w = (0, 0, 0), (0.7, -0.3, 1.4), (-0.2, 0.6, 0.5), (0.1, 0.5, -0.3)
     for operation in enum("VectorMath", "operation"):
-
-        def vector_math(n: Nodes, operation: str = operation) -> Any:
-            node = n("VectorMath", operation=operation)
-            for socket, value in zip(
-                [s for s in node.inputs if s.enabled], ((0.7, -0.3, 1.4), (-0.2, 0.6, 0.5), (0.1, 0.5, -0.3))
+        for name, operands in (("", (u, v, w)), (" by zero", (u, zero, zero)), (" of zero", (zero, v, w))):
+            if (operation, name) == ("POWER", " of zero") or (
+                operation in {"REFLECT", "REFRACT"} and name == " by zero" and bpy.app.version < (4, 0)
             ):
-                n.feed(socket, 1.3 if socket.type == "VALUE" else value)
-            result = out(node)
-            if result.type == "VALUE":
-                return n.lifted(result)
-            lift = n("VectorMath", result, (0.1, 0.1, 0.1), (5, 5, 5), operation="MULTIPLY_ADD")
-            return out(lift)
+                continue  # not finite there, and drawn as black
 
-        yield f"vector math {operation}", vector_math
+            def vector_math(n: Nodes, operation: str = operation, operands: Any = operands) -> Any:
+                node = n("VectorMath", operation=operation)
+                for socket, value in zip([s for s in node.inputs if s.enabled], operands):
+                    n.feed(socket, 1.3 if socket.type == "VALUE" else value)
+                result = out(node)
+                if result.type == "VALUE":
+                    return n.lifted(result)
+                return n.lifted_color(result)
+
+            yield f"vector math {operation}{name}", vector_math
     for kelvin in (500, 1000, 1500, 2700, 4000, 6500, 9000, 15000):
         yield f"blackbody {kelvin}", lambda n, k=kelvin: out(n("Blackbody", float(k)))
     for nanometre in (350, 400, 450, 500, 550, 600, 650, 700):

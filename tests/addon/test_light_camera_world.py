@@ -585,7 +585,9 @@ class World(SceneTest):
 
     def test_sky_behind_nodes_is_baked(self):
         texture = self.environment(None)
-        texture.image.pixels.foreach_set(np.full(8 * 4 * 4, 0.5, np.float32))
+        texture.image.pixels.foreach_set(
+            np.tile(np.float32((0.5, 0.5, 0.5, 1)), 8 * 4)
+        )  # some Blenders multiply by alpha
         gamma = self.tree.nodes.new("ShaderNodeGamma")
         gamma.inputs["Gamma"].default_value = 2
         self.tree.links.new(texture.outputs["Color"], gamma.inputs["Color"])

@@ -12,11 +12,13 @@ from patches import Nodes
 from support import SceneTest
 from wardmis.export.context import ExportContext
 from wardmis.export.image import export_image
+from wardmis.export.light import export_light
 from wardmis.export.material import export_material
 
 PIXELS = 4  # of a patch
 # of spectra Cycles has tables with finer steps, and a fit
 LOOSE = {"blackbody": 2e-3, "wavelength": 2e-3}
+OF_THE_HIT = {"fresnel", "layer weight", "layer weight facing", "light falloff", "shadow ray", "camera ray"}
 
 
 def materials(builders):
@@ -45,15 +47,32 @@ class Patches(SceneTest):
                 data = export_material(material, context)
                 self.assertIsNone(data.emission.texture)
                 if data.program is not None:  # of the view or the path: tests/cycles/parity.py compares these
-                    self.assertIn(
-                        name,
-                        {"fresnel", "layer weight", "layer weight facing", "light falloff", "shadow ray", "camera ray"},
-                    )
+                    self.assertIn(name, OF_THE_HIT)
                     continue
                 tolerance = next((t for word, t in LOOSE.items() if name.startswith(word)), 1e-3)
                 np.testing.assert_allclose(data.emission.value, colors[name], rtol=tolerance, atol=tolerance)
                 self.assertFalse(any(data.diffuse.value), "magenta")
         return context
+
+    def test_functions_of_constants_in_a_lamp(self):
+        """The same trees with the same values, which are computed elsewhere."""
+        builders = list(patches.functions())
+        colors = self.cycles(materials(builders))
+        context = ExportContext(export_image)
+        lamp = bpy.data.lights.new("Lamp", "POINT")
+        lamp.energy, lamp.shadow_soft_size = 4 * math.pi, 0
+        lamp.use_nodes = True
+        for name, build in builders:
+            if name in OF_THE_HIT:
+                continue
+            with self.subTest(name):
+                lamp.node_tree.nodes.clear()
+                nodes = Nodes(lamp.node_tree)
+                nodes.feed(nodes("OutputLight").inputs["Surface"], patches.out(nodes("Emission", build(nodes), 1.0)))
+                data = export_light(lamp, "Lamp", np.eye(4), frozenset(), context)
+                tolerance = next((t for word, t in LOOSE.items() if name.startswith(word)), 1e-3)
+                found = (0, 0, 0) if data is None else np.multiply(data.color, data.emission)
+                np.testing.assert_allclose(found, colors[name], rtol=tolerance, atol=tolerance)
 
     def cycles(self, made):
         """Name -> what Cycles shows."""

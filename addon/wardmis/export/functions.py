@@ -269,7 +269,7 @@ BLENDS: dict[str, Function] = {
     "DIFFERENCE": _mixed(lambda a, b: np.abs(a - b)),
     "EXCLUSION": lambda t, a, b: np.maximum(a + t * (b - 2.0 * a * b), 0.0),
     "SUBTRACT": _mixed(np.subtract),
-    "DIVIDE": lambda t, a, b: np.where(b != 0, (1.0 - t) * a + t * divide(a, b), 0.0),
+    "DIVIDE": lambda t, a, b: np.where(b != 0, (1.0 - t) * a + t * divide(a, b), a),
     "HUE": _mixed(lambda a, b: _with_hsv(a, b, (0,))),
     "SATURATION": lambda t, a, b: _mix_hsv_part(t, a, b, 1),
     "COLOR": _mixed(lambda a, b: _with_hsv(a, b, (0, 1))),
