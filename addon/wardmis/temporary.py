@@ -52,7 +52,11 @@ def _place() -> Path:
 
 
 def _remove_abandoned(place: Path) -> None:
-    """The system releases the lock of a process that ends, however it ends."""
+    """The system releases the lock of a process that ends, however it ends.
+
+    So its Blender is gone, too, and the folder that Blender had goes if nothing else is in it. Other folders of Blender's stay: their
+    names do not say whose they are.
+    """
     for name in glob.glob(
         f"{glob.escape(str(place))}/blender_*/{PREFIX}*"
     ):  # pathlib's fails where a folder goes meanwhile
@@ -63,6 +67,7 @@ def _remove_abandoned(place: Path) -> None:
                 with alone(path) as locked:
                     if locked:
                         shutil.rmtree(path, ignore_errors=True)
+                        path.parent.rmdir()
 
 
 def register() -> None:

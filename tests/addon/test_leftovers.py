@@ -74,6 +74,7 @@ class Killed(RenderTest):
         next_one = self.run_blender("", "--python-expr", "pass", TMPDIR=str(self.folder))
         self.assertEqual(next_one.code, 0, next_one.output)
         self.assertEqual(sorted(self.folders()), of_the_living)
+        self.assertFalse(of_the_killed[0].parent.exists(), "Blender's own folder, which is empty")
         self.assertIsNone(living.poll())
         self.assertLessEqual(set(results), set((self.folder / "results").rglob("*")))
 
@@ -107,11 +108,14 @@ class Kept(unittest.TestCase):
         """Nobody knows there who lives."""
         old = Path(bpy.app.tempdir).parent / "blender_without" / f"{temporary.PREFIX}locks"
         old.mkdir(parents=True)
-        self.addCleanup(shutil.rmtree, old.parent)
+        self.addCleanup(shutil.rmtree, old.parent, ignore_errors=True)
         os.utime(old, (0, 0))
         with mock.patch.object(lock, "fcntl", None):
             temporary.register()
         self.assertTrue(old.exists())
         self.assertGreater(time.time() - old.stat().st_mtime, temporary.YOUNG_SECONDS)
+        other = old.with_name("of something else")
+        other.touch()
         temporary.register()
         self.assertFalse(old.exists())
+        self.assertTrue(other.exists())
