@@ -14,7 +14,6 @@ from .image import MISSING
 from .model import ColorInput, MaterialData, ScalarInput, not_finite
 from .program.closures import Shading
 from .program.reader import Reader
-from .program.reduced import reduce
 from .program.surface import MOST_OPERATIONS, material_of
 from .tree import Owner, output_use
 from .value import NotFinite
@@ -70,5 +69,4 @@ def _surface_of(material: Any, owner: Owner) -> MaterialData:
         output.note("has no surface connected; rendered as black, as in Cycles")
         return MaterialData(material.name)
     shading.read(output, "Surface")
-    reduce(shading)
     return material_of(material.name, shading)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from ... import compat
 from ..model import ClosureData, ColorInput, MaterialData, ProgramData, ScalarInput, TextureUse
 from .builder import Result, Value, constant, is_constant
 from .closures import BLACK, Closure, Shading
@@ -158,7 +159,7 @@ def _closure(writer: Writer, closure: Closure) -> ClosureData:
             or isinstance(value, tuple)
         )
         inputs[name] = writer.color(value) if is_color else writer.scalar(value)
-    parameters = dict(closure.parameters)
+    parameters = {"version": compat.CYCLES, **closure.parameters}
     coat_normal = parameters.pop("coatNormal", None)
     weight = closure.weight
     return ClosureData(
