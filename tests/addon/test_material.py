@@ -63,6 +63,20 @@ class MaterialCase(unittest.TestCase):
     def assertRgb(self, found, expected):
         np.testing.assert_allclose(found, expected, rtol=1e-5, atol=1e-6)
 
+    def closures(self, surface):
+        """Of a material that is no short form."""
+        data = self.export(surface)
+        self.assertTrue(data.closures)
+        self.assertRgb((*data.diffuse.value, *data.specular.value), [0.0] * 6)
+        return data.closures
+
+    def assertInputs(self, closure, **expected):
+        """Of a closure: constants all."""
+        for name, value in expected.items():
+            with self.subTest(name):
+                self.assertIsNone(getattr(closure.inputs[name], "result", None))
+                self.assertRgb(closure.inputs[name].value, value)
+
     def assertNoted(self, *words):
         self.assertTrue(any(all(word in note for word in words) for note in self.context.notes), self.context.notes)
 
@@ -86,49 +100,73 @@ class Shaders(MaterialCase):
         self.assertRgb(data.specular.value, (0, 0, 0))
         self.assertEqual(self.context.notes, [])
 
-    def test_rough_diffuse_is_noted(self):
-        self.export(self.node("ShaderNodeBsdfDiffuse", Roughness=0.5))
-        self.assertNoted("material 'M' on object 'O'", "Oren-Nayar")
+    def test_rough_diffuse_is_a_closure(self):
+        (rough,) = self.closures(self.node("ShaderNodeBsdfDiffuse", Color=(0.1, 0.2, 0.3, 1), Roughness=0.5))
+        self.assertEqual((rough.type, rough.weight, rough.parameters), ("diffuse", None, {"version": compat.CYCLES}))
+        self.assertInputs(rough, color=(0.1, 0.2, 0.3), roughness=0.5)
+        self.assertEqual(self.context.notes, [])
 
     def test_glossy_under_every_name_that_this_blender_has(self):
         for kind in ("ShaderNodeBsdfGlossy", "ShaderNodeBsdfAnisotropic"):
             if not hasattr(bpy.types, kind):
                 continue
             with self.subTest(kind):
-                data = self.export(self.node(kind, Color=(0.5, 0.6, 0.7, 1), Roughness=0.3))
-                self.assertRgb(data.specular.value, (0.5, 0.6, 0.7))
-                self.assertRgb((data.alpha_x.value, data.alpha_y.value), (0.09, 0.09))
-                self.assertRgb(data.diffuse.value, (0, 0, 0))
+                node = self.node(kind, Color=(0.5, 0.6, 0.7, 1), Roughness=0.3)
+                node.distribution = "BECKMANN"
+                (glossy,) = self.closures(node)
+                self.assertEqual(glossy.type, "glossy")
+                self.assertEqual(glossy.parameters, {"distribution": "beckmann", "version": compat.CYCLES})
+                self.assertInputs(glossy, color=(0.5, 0.6, 0.7), alphaX=0.09, alphaY=0.09)
 
     def test_anisotropy_as_in_cycles(self):
         for anisotropy, expected in ((0.5, (0.045, 0.18)), (-0.5, (0.18, 0.045))):
-            data = self.export(
+            (glossy,) = self.closures(
                 self.node("ShaderNodeBsdfAnisotropic", Roughness=0.3, Anisotropy=anisotropy, Rotation=0.5)
             )
-            self.assertRgb((data.alpha_x.value, data.alpha_y.value), expected)
-            self.assertAlmostEqual(data.rotation, math.pi)
+            self.assertInputs(glossy, alphaX=expected[0], alphaY=expected[1], rotation=math.pi)
 
     def test_principled(self):
         node = self.node("ShaderNodeBsdfPrincipled", Base_Color=(0.8, 0.4, 0.2, 1), Metallic=0.25, Roughness=0.4)
-        node.inputs[compat.PRINCIPLED_SPECULAR].default_value = 0.5
-        if compat.PRINCIPLED_SPECULAR_OF_IOR:
-            node.inputs["IOR"].default_value = 1.5
-        data = self.export(node)
-        below = 0.96 if compat.PRINCIPLED_LAYERS else 1.0
-        self.assertRgb(data.diffuse.value, (0.6 * below, 0.3 * below, 0.15 * below))
-        self.assertRgb(data.specular.value, (0.2 + 0.03, 0.1 + 0.03, 0.05 + 0.03))
-        self.assertRgb((data.alpha_x.value, data.alpha_y.value), (0.16, 0.16))
-        self.assertRgb(data.emission.value, (0, 0, 0))
+        node.inputs[compat.PRINCIPLED_SPECULAR].default_value = 0.3
+        node.inputs["IOR"].default_value = 1.6
+        (principled,) = self.closures(node)
+        self.assertEqual((principled.type, principled.weight), ("principled", None))
+        self.assertEqual(principled.parameters["version"], compat.CYCLES)
+        level = "specular" if compat.CYCLES == 3 else "specularIorLevel"
+        self.assertInputs(principled, baseColor=(0.8, 0.4, 0.2), metallic=0.25, roughness=0.4, ior=1.6, **{level: 0.3})
+        self.assertRgb(self.export().emission.value, (0, 0, 0))
         self.assertEqual(self.context.notes, [])
 
-    def test_principled_emission_and_extras(self):
-        node = self.node("ShaderNodeBsdfPrincipled", Emission_Strength=3.0, Alpha=0.5)
+    def test_principled_has_every_input_of_its_node_or_names_it(self):
+        node = self.node("ShaderNodeBsdfPrincipled", Emission_Strength=3.0, Alpha=0.5, Anisotropic=0.5)
         node.inputs[compat.PRINCIPLED_EMISSION].default_value = (0.5, 1, 2, 1)
-        node.inputs[compat.PRINCIPLED_EXTRAS[1]].default_value = 1.0
         data = self.export(node)
         self.assertRgb(data.emission.value, (0.75, 1.5, 3))
-        self.assertNoted("'Transmission", "left out")
-        self.assertNoted("alpha below 1")
+        *transparent, principled = data.closures
+        if compat.CYCLES == 3:  # where the node's alpha is a mix with a transparent one
+            self.assertEqual([c.type for c in transparent], ["transparent"])
+            self.assertRgb((*transparent[0].weight.value, *principled.weight.value), [0.5] * 6)
+        else:
+            self.assertEqual(transparent, [])
+            self.assertInputs(principled, alpha=0.5)
+        self.assertEqual(self.context.notes, [])
+        given = {"Emission Strength", "Emission", "Emission Color", "Alpha", "Weight", "Tangent"}
+        given |= {name for name in node.inputs.keys() if name.endswith("Normal")}  # noqa: SIM118  sockets
+        # of what is named if it is there at all
+        given |= {"Subsurface Radius", "Subsurface Scale", "Subsurface IOR", "Subsurface Anisotropy", "Thin Film IOR"}
+        for socket in node.inputs:
+            if socket.name in given or not hasattr(socket, "default_value") or socket.type == "BOOLEAN":
+                continue
+            with self.subTest(socket.name):
+                self.context.notes.clear()
+                before, old = self.export().closures[-1], socket.default_value
+                old = tuple(old) if socket.type in {"RGBA", "VECTOR"} else old
+                socket.default_value = 0.37 if isinstance(old, float) else [0.37] * len(old)
+                after = self.export().closures[-1]
+                changed = after.inputs != before.inputs
+                named = any(f"'{socket.name}'" in note for note in self.context.notes)
+                socket.default_value = old
+                self.assertTrue(changed or named)
 
     def test_emission(self):
         data = self.export(self.node("ShaderNodeEmission", Color=(1, 0.5, 0.25, 1), Strength=8.0))
@@ -142,17 +180,23 @@ class Shaders(MaterialCase):
         for parent, first in ((add, 0), (mix, 1)):
             self.link(diffuse, parent, first)
             self.link(glossy, parent, first + 1)
-        data = self.export(add)
-        self.assertRgb((data.diffuse.value[0], data.specular.value[0], data.alpha_x.value), (0.4, 0.8, 0.25))
-        data = self.export(mix)
-        self.assertRgb((data.diffuse.value[0], data.specular.value[0], data.alpha_x.value), (0.3, 0.2, 0.25))
+        first, second = self.closures(add)
+        self.assertEqual((first.type, first.weight, second.type, second.weight), ("diffuse", None, "glossy", None))
+        self.assertInputs(first, color=[0.4] * 3)
+        self.assertInputs(second, color=[0.8] * 3, alphaX=0.25)
+        first, second = self.closures(mix)
+        self.assertEqual((first.type, second.type), ("diffuse", "glossy"))
+        self.assertRgb((*first.weight.value, *second.weight.value), [0.75] * 3 + [0.25] * 3)
         self.assertEqual(self.context.notes, [])
 
     def test_two_lobes_of_one_shape_add_exactly(self):
         add = self.node("ShaderNodeAddShader")
         for i in range(2):
-            self.link(self.node("ShaderNodeBsdfAnisotropic", Color=(0.3, 0.3, 0.3, 1), Roughness=0.2), add, i)
-        self.assertRgb(self.export(add).specular.value, (0.6, 0.6, 0.6))
+            ward = self.node("WardBSDFNode", Diffuse_Color=(0.1, 0.1, 0.1, 1), Specular_Color=(0.3, 0.3, 0.3, 1))
+            self.link(ward, add, i)
+        data = self.export(add)
+        self.assertEqual(data.closures, [])
+        self.assertRgb((data.diffuse.value[0], *data.specular.value), (0.2, 0.6, 0.6, 0.6))
         self.assertEqual(self.context.notes, [])
 
     def test_without_nodes_the_viewport_color_is_diffuse(self):
@@ -384,7 +428,7 @@ class Values(MaterialCase):
         glossy, rgb = self.node("ShaderNodeBsdfAnisotropic"), self.node("ShaderNodeRGB")
         rgb.outputs[0].default_value = (0, 1, 0, 1)
         self.link(rgb, glossy, "Roughness")
-        self.assertAlmostEqual(self.export(glossy).alpha_x.value, 0.7152**2, places=5)
+        self.assertInputs(self.closures(glossy)[0], alphaX=0.7152**2)
 
     def test_plain_texture_is_handed_on_as_it_is(self):
         image = self.image([[(0.1, 0.2, 0.3, 1), (0.4, 0.5, 0.6, 1)]])
