@@ -109,7 +109,7 @@ Material Materials::ward(const Json& extension) {
   readAlpha(extension, "alphaY", m.alphaY);
   m.rotation = extension.numberOr("rotation", 0);
   m.index = extension.numberOr("index", 0);
-  readNormal(extension, "normal", m.normal);
+  readDirection(extension, "normal", m.normal);
   if (closures) {
     const JsonArray list = closures->array();
     for (size_t i = 0; i < list.size(); ++i) m.closures.push_back(closure(list[i]));
@@ -122,10 +122,10 @@ Material Materials::ward(const Json& extension) {
   return m;
 }
 
-void Materials::readNormal(const Json& json, const char* key, int& result) {
-  if (const auto normal = json.find(key)) {
-    normal->at("result");
-    readResult(*normal, ValueKind::kVector, result);
+void Materials::readDirection(const Json& json, const char* key, int& result) {
+  if (const auto direction = json.find(key)) {
+    direction->at("result");
+    readResult(*direction, ValueKind::kVector, result);
   }
 }
 
@@ -161,8 +161,9 @@ Closure Materials::closure(const Json& json) {
   if (const auto distribution = json.find("distribution"); distribution && i.distribution)
     c.distribution = distribution->choice(kDistributions);
   if (const auto thin = json.find("thinWall")) c.thinWall = thin->boolean();
-  readNormal(json, "normal", c.normal);
-  readNormal(json, "coatNormal", c.coatNormal);
+  readDirection(json, "normal", c.normal);
+  readDirection(json, "coatNormal", c.coatNormal);
+  readDirection(json, "tangent", c.tangent);
   return c;
 }
 

@@ -50,7 +50,7 @@ class Materials {
   Material core(const Json& json);
   void readColor(const Json& extension, std::string_view key, ColorInput& out, bool light = false);
   Closure closure(const Json& json);
-  void readNormal(const Json& json, const char* key, int& result);
+  void readDirection(const Json& json, const char* key, int& result);
   void readScalar(const Json& extension, std::string_view key, ScalarInput& out);
   void readAlpha(const Json& extension, std::string_view key, ScalarInput& out);
   // Whether the input is a value of the program.

@@ -302,6 +302,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       shadow.origin = x.leave(l.direction);
       shadow.direction = l.direction;
       shadow.kind = kCastsShadow;
+      if constexpr (kGeneral) shadow.path = x.path.shadow();
       if (l.distance < 1e30f) {
         // up to just before the emitter: from the moved origin to the same point, by way of differences, since the
         // point itself would be rounded to a place beside or behind the emitter far from the origin
@@ -375,7 +376,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       const float scale = mixture.scale(t, p, used);
       Rgb w = (split ? f[t] : total(f)) * scale;
       if constexpr (kGeneral) w *= seenThrough;
-      const Bounce bounce = diffuse ? kDiffuseBounce : ahead ? kGlossyBounce : kTransmissionBounce;
+      const Bounce bounce = !ahead ? kTransmissionBounce : diffuse ? kDiffuseBounce : kGlossyBounce;
       if (maxComponent(w) > 0)
         continuations.list.set(continuations.count++, {ray, hit, w, t, bounce, scale, used, set, p});
     }

@@ -24,7 +24,7 @@ void resolve(const Scene& scene, const Material& m, const ShadedPoint& point, Ve
   surface.ay = alpha(m.alphaY);
   emission = color(m.emission);
   if (m.normal < 0) return;
-  const Vec3f n = vectorOf(program, slots, m.normal);
+  const Vec3f n = directionOf(scene, program, slots, m.normal);
   const float l = length(n);
   if (l > 0) normal = bent(n / l, point.geometric, point.wo);
 }
@@ -44,13 +44,13 @@ Framef resolveLobes(const Scene& scene, const Material& m, const ShadedPoint& po
   };
   const auto normalOf = [&](int result, Vec3f otherwise) {
     if (result < 0) return otherwise;
-    const Vec3f n = vectorOf(*m.program, slots, result);
+    const Vec3f n = directionOf(scene, *m.program, slots, result);
     const float l = length(n);
     return l > 0 ? bent(n / l, point.geometric, point.wo) : otherwise;
   };
-  const auto frameAround = [&](Vec3f n, bool anisotropic, float rotation) {
+  const auto frameAround = [&](Vec3f n, bool anisotropic, float rotation, int along = -1) {
     if (!anisotropic) return Framef::around(n);
-    const Framef f = Framef::around(n, tangent);
+    const Framef f = Framef::around(n, along >= 0 ? directionOf(scene, *m.program, slots, along) : tangent);
     const float c = std::cos(rotation), s = std::sin(rotation);
     return Framef{f.x * c + f.y * s, f.y * c - f.x * s, n};
   };
@@ -85,7 +85,8 @@ Framef resolveLobes(const Scene& scene, const Material& m, const ShadedPoint& po
                                                                    : false;
     const Vec3f n = normalOf(c.normal, point.normal), coat = normalOf(c.coatNormal, n);
     std::array<uint8_t, 3> at{};
-    if (anisotropic || c.normal >= 0) at[0] = surface.addFrame(frameAround(n, anisotropic, scalar(c.rotation)));
+    if (anisotropic || c.normal >= 0)
+      at[0] = surface.addFrame(frameAround(n, anisotropic, scalar(c.rotation), c.tangent));
     at[1] = at[2] = at[0];
     if (c.coatNormal >= 0) {
       at[1] = surface.addFrame(Framef::around(coat));

@@ -18,7 +18,9 @@ struct RenderScene {
   bool transparency = false;  // some surface lets light straight through
 };
 
-inline constexpr int kMostTransparent = 8;  // surfaces that a ray passes; Cycles' default
+// Surfaces that a path passes, all its rays together, and a shadow ray from there; Cycles' default. The next one lets
+// nothing through.
+inline constexpr int kMostTransparent = 8;
 
 namespace detail {
 
@@ -47,7 +49,7 @@ Hit trace(const RenderScene& world, Ray& ray, uint32_t key, Rgb& weight, Along&&
     const auto x = interact<N, K>(world.scene, world.geometry, ray, hit);
     const Rgb through = x.surface.transparent;
     const float q = std::clamp((through.x + through.y + through.z) / 3, 0.0f, 1.0f);
-    if (!(q > 0)) return hit;
+    if (!(q > 0) || ray.path.transparent >= kMostTransparent) return hit;
     if (toUnit(combine(key, 0x51ed270bu + passed)) >= q) {
       weight = weight / (1 - q);
       return hit;
@@ -55,10 +57,6 @@ Hit trace(const RenderScene& world, Ray& ray, uint32_t key, Rgb& weight, Along&&
     weight = weight * through / q;
     ray.tMin = detail::behind(x, ray.direction, hit.t);
     ray.path = ray.path.passed();
-    if (passed >= kMostTransparent) {
-      weight = {0, 0, 0};
-      return {};
-    }
   }
 }
 
@@ -69,10 +67,10 @@ Rgb transmittance(const RenderScene& world, Ray ray) {
   if constexpr ((N & kNeedsLobes) == 0) return world.accel.occluded(ray) ? kNone : kAll;
   if (!world.transparency) return world.accel.occluded(ray) ? kNone : kAll;
   Rgb left = kAll;
-  for (int passed = 0; passed <= kMostTransparent; ++passed) {
+  for (;;) {
     const Hit hit = world.accel.intersect(ray);
     if (!hit.valid()) return left;
-    if (!detail::mayPass(world, hit)) return kNone;
+    if (ray.path.transparent >= kMostTransparent || !detail::mayPass(world, hit)) return kNone;
     const auto x = interact<N, K>(world.scene, world.geometry, ray, hit);
     left *= x.surface.transparent;
     if (!(maxComponent(left) > 0)) return kNone;
@@ -80,7 +78,6 @@ Rgb transmittance(const RenderScene& world, Ray ray) {
     if (!(ray.tMin < ray.tMax)) return left;
     ray.path = ray.path.passed();
   }
-  return kNone;
 }
 
 }  // namespace wardmis

@@ -36,9 +36,14 @@ struct PathState {
     next.kinds = by;
     next.before += t;
     count(next.depth);
-    if ((by & kDiffuseRay) != 0) count(next.diffuse);
-    if ((by & kGlossyRay) != 0) count(next.glossy);
-    if ((by & kTransmissionRay) != 0) count(next.transmission);
+    count((by & kTransmissionRay) != 0 ? next.transmission : (by & kDiffuseRay) != 0 ? next.diffuse : next.glossy);
+    return next;
+  }
+  // From there towards a light.
+  PathState shadow() const {
+    PathState next = *this;
+    next.kinds = kShadowRay;
+    next.depth = static_cast<uint8_t>(next.depth + (next.depth < 255));
     return next;
   }
   // Straight through a surface.

@@ -50,7 +50,7 @@ struct Closure {
   Glossy distribution = Glossy::kGgx;
   WardVariant variant = WardVariant::kWardGmd;
   bool thinWall = false;
-  int normal = -1, coatNormal = -1;  // indices into Program::results: world space; -1: the mesh's
+  int normal = -1, coatNormal = -1, tangent = -1;  // indices into Program::results: directions; -1: the mesh's own
   ColorInput weight{{1, 1, 1}, {}};
   ScalarInput rotation;  // of the anisotropy, radians
   std::vector<ColorInput> colors;

@@ -37,5 +37,10 @@ inline Vec3f vectorOf(const Program& program, const Slots& slots, int result) {
   const float* p = slots.data() + program.results[static_cast<size_t>(result)];
   return {finiteOrZero(p[0]), finiteOrZero(p[1]), finiteOrZero(p[2])};
 }
+// A normal or a tangent, from the axes that the scene is told in to the file's.
+inline Vec3f directionOf(const Scene& scene, const Program& program, const Slots& slots, int result) {
+  const Vec3f v = vectorOf(program, slots, result);
+  return scene.zUp ? Vec3f{v.x, v.z, -v.y} : v;
+}
 
 }  // namespace wardmis

@@ -124,6 +124,13 @@ class Shaders(MaterialCase):
                 self.node("ShaderNodeBsdfAnisotropic", Roughness=0.3, Anisotropy=anisotropy, Rotation=0.5)
             )
             self.assertInputs(glossy, alphaX=expected[0], alphaY=expected[1], rotation=math.pi)
+            self.assertIsNotNone(glossy.tangent)
+        self.assertEqual(self.export().program.operations, [{"op": "tangent", "axis": "z"}])
+        tangent = self.node("ShaderNodeTangent")
+        tangent.direction_type, tangent.axis = "RADIAL", "X"
+        self.link(tangent, self.output.inputs["Surface"].links[0].from_node, "Tangent")
+        self.assertEqual(self.export().program.operations, [{"op": "tangent", "axis": "x"}])
+        self.assertEqual(self.context.notes, [])
 
     def test_principled(self):
         node = self.node("ShaderNodeBsdfPrincipled", Base_Color=(0.8, 0.4, 0.2, 1), Metallic=0.25, Roughness=0.4)

@@ -422,7 +422,7 @@ def _closure(closure: ClosureData) -> dict[str, Any]:
     if closure.weight is not None:
         result["weight"] = _input(closure.weight)
     result |= {name: _input(value) for name, value in closure.inputs.items()}
-    for name, normal in (("normal", closure.normal), ("coatNormal", closure.coat_normal)):
+    for name, normal in (("normal", closure.normal), ("coatNormal", closure.coat_normal), ("tangent", closure.tangent)):
         if normal is not None:
             result[name] = {"result": normal.result}
     return result

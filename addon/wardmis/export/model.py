@@ -117,6 +117,7 @@ class ClosureData:
     parameters: dict[str, Any]
     normal: ColorInput | None  # of a result alone
     coat_normal: ColorInput | None
+    tangent: ColorInput | None
 
 
 @dataclass

@@ -162,6 +162,42 @@ TEST(ProgramRender, NormalsTurnTheSurface) {
   setProgram(scene.materials[0], {{{"op", "normal-map-world"}, {"in", {{0.8, 0.5, 0.9}, 1}}}}, {0});
   scene.materials[0].normal = 0;
   EXPECT_NEAR(measure(renderScene(scene, settings(4))).mean, 0.8, 1e-5);
+  // told in the axes with z up, in which the file's (x, y, z) is (x, -z, y); in both forms of a material
+  scene.zUp = true;
+  setProgram(scene.materials[0], {{{"op", "normal-map-world"}, {"in", {{0.8, 0.1, 0.5}, 1}}}}, {0});
+  EXPECT_NEAR(measure(renderScene(scene, settings(4))).mean, 0.8, 1e-5);
+  Closure diffuse;
+  diffuse.colors = {{{1, 1, 1}, {}}}, diffuse.scalars = {{0, {}}}, diffuse.normal = 0;
+  scene.materials[0].closures = {diffuse};
+  EXPECT_NEAR(measure(renderScene(scene, settings(4))).mean, 0.8, 1e-5);
+}
+
+// Of a closure that is there for shadow rays alone, and of one that is not: a sheet between a plane and a sun.
+TEST(ProgramRender, ShadowRaysAreToldFromOthers) {
+  for (const bool forShadows : {false, true}) {
+    Scene scene;
+    Material sheet;
+    setProgram(sheet,
+               {{{"op", "is-shadow-ray"}},
+                {{"op", "subtract"}, {"in", {1, {{"result", 0}}}}},
+                {{"op", "vector"}, {"in", {{{"result", forShadows ? 0 : 1}}}}}},
+               {2});
+    Closure window;
+    window.type = ClosureType::kTransparent;
+    window.colors = {{{1, 1, 1}, {}}}, window.weight.result = 0;
+    sheet.closures = {window}, sheet.transparent = true;
+    scene.materials = {ward({1, 1, 1}, {0, 0, 0}, 0.1f, WardVariant::kWardGmd), sheet};
+    addPlane(scene, 1, 0);
+    addPlane(scene, 1, 1, 1);
+    Light sun;
+    sun.type = LightType::kSun;
+    sun.emitted = {kPi<float>, kPi<float>, kPi<float>};
+    sun.toWorld = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}};
+    scene.lights = {sun};
+    lookFrom(scene, 0, 0.9f, 4);
+    scene.camera->toWorld.t.z = 0.5f;  // below the sheet
+    EXPECT_NEAR(measure(renderScene(scene, settings(4))).mean, forShadows ? 1 : 0, 1e-5);
+  }
 }
 
 // Instances keep what is told of each.

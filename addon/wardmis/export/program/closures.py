@@ -18,7 +18,7 @@ WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
 
 @dataclass
 class Closure:
-    """One of docs/scene-format.md, "Closures". `weight`: a number; `normal` None: the surface's own."""
+    """One of docs/scene-format.md, "Closures". `weight`: a number; `normal`, `tangent` None: the surface's own."""
 
     use: NodeUse
     type: str
@@ -26,6 +26,7 @@ class Closure:
     inputs: dict[str, Value]
     parameters: dict[str, Any] = field(default_factory=dict)
     normal: Value | None = None
+    tangent: Value | None = None
 
 
 class Shading:
@@ -58,13 +59,19 @@ class Shading:
     def emit(self, radiance: Value, weight: Value) -> None:
         self.emission = self.p.add(self.emission, self.p.multiply(radiance, weight))
 
-    def add(self, use: NodeUse, type: str, weight: Value, parameters: Any = None, **inputs: Value) -> None:
+    def add(
+        self,
+        use: NodeUse,
+        type: str,
+        weight: Value,
+        parameters: Any = None,
+        tangent: Value | None = None,
+        **inputs: Value,
+    ) -> None:
         if is_zero(inputs.get("color", WHITE)):
             return
-        if "alphaX" in inputs and use.is_linked("Tangent"):
-            use.note("has a tangent from other nodes, which is not supported; the surface's own is used")
         normal = self.p.linked(use, "Normal")
-        self.closures.append(Closure(use, type, weight, inputs, parameters or {}, normal))
+        self.closures.append(Closure(use, type, weight, inputs, parameters or {}, normal, tangent))
 
 
 def _add_shader(use: NodeUse, s: Shading, weight: Value) -> None:
@@ -88,6 +95,12 @@ def _ward(use: NodeUse, s: Shading, weight: Value) -> None:
 
 def _turn(use: NodeUse, p: Reader, name: str = "Rotation") -> dict[str, Value]:
     return {"rotation": p.multiply(p.read(use, name), 2.0 * math.pi)} if use.has(name) else {}
+
+
+def _tangent(use: NodeUse, p: Reader) -> Value:
+    """From which Cycles turns the axes of the anisotropy."""
+    linked = p.linked(use, "Tangent")
+    return p("tangent", axis="z") if linked is None else linked
 
 
 def _square(p: Reader, value: Value) -> Value:
@@ -131,14 +144,15 @@ def _glossy(use: NodeUse, s: Shading, weight: Value) -> None:
     x = y = _alpha(use, p)
     anisotropy = p.read(use, "Anisotropy") if use.has("Anisotropy") else 0.0
     turn: dict[str, Value] = {}
+    tangent = None
     if not is_zero(anisotropy):  # as Cycles shares the roughness between the axes
         most = p("minimum", p("absolute", anisotropy), 0.99)
         along = p.complement(most)
         short, long = p("multiply", x, along), p("divide", x, along)
         first = p("greater-than", 0.0, anisotropy)
         x, y = p("mix-number", first, short, long), p("mix-number", first, long, short)
-        turn = _turn(use, p)
-    s.add(use, "glossy", weight, _distribution(use), color=p.read(use, "Color"), alphaX=x, alphaY=y, **turn)
+        turn, tangent = _turn(use, p), _tangent(use, p)
+    s.add(use, "glossy", weight, _distribution(use), tangent, color=p.read(use, "Color"), alphaX=x, alphaY=y, **turn)
 
 
 def _refractive(kind: str) -> Callable[[NodeUse, Shading, Value], None]:
@@ -275,13 +289,10 @@ def _principled(use: NodeUse, s: Shading, weight: Value) -> None:
     for name, what in SPECIAL.items():
         if use.has(name) and not is_zero(p.read(use, name)):
             use.note(f"has '{name}': {what}")
-    if use.is_linked("Tangent"):
-        use.note("has a tangent from other nodes, which is not supported; the surface's own is used")
     inputs = {ours: p.read(use, theirs) for ours, theirs in names.items() if use.has(theirs)}
-    if is_zero(inputs["anisotropic"]):
-        inputs.pop("rotation")
-    else:
-        inputs["rotation"] = p.multiply(inputs["rotation"], 2.0 * math.pi)
+    turn, tangent = inputs.pop("rotation"), None
+    if not is_zero(inputs["anisotropic"]):
+        inputs["rotation"], tangent = p.multiply(turn, 2.0 * math.pi), _tangent(use, p)
     parameters: dict[str, Any] = _distribution(use)
     coat = "Clearcoat Normal" if compat.CYCLES == 3 else "Coat Normal"
     coat_normal = p.linked(use, coat)
@@ -296,7 +307,7 @@ def _principled(use: NodeUse, s: Shading, weight: Value) -> None:
         below = p.multiply(weight, alpha)
     if not is_zero(below):
         normal = p.linked(use, "Normal")
-        s.closures.append(Closure(use, "principled", below, inputs, parameters, normal))
+        s.closures.append(Closure(use, "principled", below, inputs, parameters, normal, tangent))
     light = p.multiply(p.read(use, compat.PRINCIPLED_EMISSION), p.read(use, "Emission Strength"))
     s.emit(light, p.multiply(weight, alpha))
 

@@ -169,4 +169,5 @@ def _closure(writer: Writer, closure: Closure) -> ClosureData:
         parameters,
         None if closure.normal is None else writer.vector(closure.normal),
         None if coat_normal is None else writer.vector(coat_normal),
+        None if closure.tangent is None else writer.vector(closure.tangent),
     )
