@@ -470,6 +470,49 @@ int Materials::addImage(Image image, const Texture& like) {
   return static_cast<int>(read_.textures.size() - 1);
 }
 
+// Light is never magenta: where an image is lost it is grey. Names what is lost.
+void Materials::mendLight(std::vector<World>& worlds, const std::vector<DecodedImage>& decoded,
+                          std::vector<std::string>& notes) {
+  int grey = -1;
+  std::vector<bool> shines(decoded.size()), shows(decoded.size());
+  const auto isLost = [&](int texture) {
+    if (texture < 0) return false;
+    const auto image = static_cast<size_t>(read_.textures[texture].image);
+    return image < decoded.size() && !decoded[image].damage.empty();
+  };
+  const auto mend = [&](int& texture) {
+    if (!isLost(texture)) return;
+    shines[read_.textures[texture].image] = true;
+    if (grey < 0) {
+      Image half{"", 1, 1, 3, false, {}, {0.5f, 0.5f, 0.5f}};
+      grey = addImage(std::move(half), read_.textures[texture]);
+    }
+    texture = grey;
+  };
+  const auto show = [&](int texture) {
+    if (isLost(texture)) shows[read_.textures[texture].image] = true;
+  };
+  for (World& w : worlds) mend(w.texture);
+  for (Material& m : read_.materials) {
+    mend(m.emission.texture.texture);
+    Material::forEachInput(m, [&](auto& input) { show(input.texture.texture); });
+    if (m.program)
+      for (const uint32_t t : m.program->textures) show(static_cast<int>(t));
+  }
+  for (const Bake& b : bakes_)
+    for (const TextureUse& use : {b.baseTexture, b.roughnessTexture}) show(use.texture);
+  for (size_t i = 0; i < decoded.size(); i++) {
+    if (decoded[i].damage.empty()) continue;
+    const auto uri = pending_[i].json.find("uri");
+    notes.push_back(fmt::format("image {}{} {} (needed by {}); {} is shown instead", pending_[i].json.described(),
+                                uri ? " '" + cleaned(uri->string().substr(0, 80)) + "'" : std::string(),
+                                cleaned(decoded[i].damage), pending_[i].neededBy,
+                                !shines[i]  ? "magenta"
+                                : !shows[i] ? "grey light"
+                                            : "magenta, and grey where it gives light,"));
+  }
+}
+
 void Materials::finish(Scene& scene) {
   std::vector<Bytes> bytes;
   for (PendingImage& p : pending_) bytes.push_back(fetch(p));
@@ -482,15 +525,9 @@ void Materials::finish(Scene& scene) {
     if (decoded[i].mended > 0)
       leftOut_.add(fmt::format("{} values of image {}", decoded[i].mended, pending_[i].json.described()),
                    "not finite; 0 is used");
-    if (!decoded[i].damage.empty()) {
-      const auto uri = pending_[i].json.find("uri");
-      scene.notes.push_back(fmt::format("image {}{} {} (needed by {}); magenta is shown instead",
-                                        pending_[i].json.described(),
-                                        uri ? " '" + cleaned(uri->string().substr(0, 80)) + "'" : std::string(),
-                                        cleaned(decoded[i].damage), pending_[i].neededBy));
-    }
     read_.images.push_back(std::move(image));
   }
+  mendLight(scene.worlds, decoded, scene.notes);
   for (const Bake& b : bakes_) bake(b, budget);
 
   // Keep what the materials and the world refer to now.

@@ -64,6 +64,7 @@ class Materials {
   static DecodedImage decode(const PendingImage& pending, const Bytes& bytes, ImageBudget& budget);
   void bake(const Bake& bake, ImageBudget& budget);
   int addImage(Image image, const Texture& like);
+  void mendLight(std::vector<World>& worlds, const std::vector<DecodedImage>& decoded, std::vector<std::string>& notes);
 
   JsonArray materials_, textures_, samplers_, images_;
   Buffers& buffers_;

@@ -143,6 +143,42 @@ TEST(Foreign, ImagesThatAreMissingAreMagenta) {
   }
 }
 
+// Light is never magenta: that of a sky, of a surface, of an unlit one.
+TEST(Foreign, LightOfImagesThatAreMissingIsGrey) {
+  const json texture = {{"index", 0}};
+  const auto lost = [](json material) {
+    GlbBuilder b = textured(std::move(material));
+    b.root["textures"] = {{{"source", 0}}};
+    b.root["images"] = json::array({{{"uri", "lost.png"}}});
+    return b;
+  };
+  const std::pair<json, bool> kSurfaces[] = {
+      {{{"emissiveFactor", {1, 1, 1}}, {"emissiveTexture", texture}}, false},
+      {ward({{"emission", {{"value", {2, 2, 2}}, {"texture", texture}}}}), false},
+      {{{"pbrMetallicRoughness", {{"baseColorTexture", texture}}},
+        {"extensions", {{"KHR_materials_unlit", json::object()}}}},
+       false},
+      {ward({{"emission", {{"texture", texture}}}, {"diffuse", {{"texture", texture}}}}), true},
+  };
+  for (const auto& [material, shows] : kSurfaces) {
+    const Scene s = read(lost(material).bytes());
+    const Material& m = s.materials.at(0);
+    const Image& light = s.images.at(s.textures.at(m.emission.texture.texture).image);
+    EXPECT_EQ(light.floats, (std::vector<float>{0.5f, 0.5f, 0.5f})) << material;
+    ASSERT_EQ(s.notes.size(), 1u);
+    expectHas(s.notes[0],
+              shows ? "; magenta, and grey where it gives light, is shown instead" : "); grey light is shown instead");
+    if (shows) {
+      EXPECT_EQ(s.images.at(s.textures.at(m.diffuse.texture.texture).image).bytes, (std::vector<uint8_t>{255, 0, 255}));
+    }
+  }
+  GlbBuilder b = lost({{"name", "Plate"}});
+  b.root["extensions"]["WARDMIS_scene"] = {{"version", 1}, {"world", {{"radiance", {2, 2, 2}}, {"texture", texture}}}};
+  const Scene s = read(b.bytes());
+  EXPECT_EQ(s.images.at(s.textures.at(s.worlds.at(0).texture).image).floats, (std::vector<float>{0.5f, 0.5f, 0.5f}));
+  expectHas(s.notes.at(0), "(needed by the world); grey light is shown instead");
+}
+
 TEST(Foreign, TexturesMayNameTheirImageByAnExtension) {
   for (const char* extension : {"EXT_texture_webp", "KHR_texture_basisu", "MSFT_texture_dds"}) {
     GlbBuilder b = textured({{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"baseColorTexture", {{"index", 0}}}}}});
