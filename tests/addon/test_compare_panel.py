@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import sys
 import time
 import types
@@ -21,7 +22,7 @@ from comparison_support import SMALL, ComparisonTest
 from support import ADDON
 from wardmis import compat, rendering, scripting, second_blender, temporary, warnings
 from wardmis import layout as panel_layout
-from wardmis.comparison import colours, images, job, operators, panels, plot, properties
+from wardmis.comparison import colours, cycles, estimate, images, job, operators, panels, plot, properties
 from wardmis.comparison.command_line import progress_text
 from wardmis.comparison.estimate import duration
 from wardmis.comparison.overrides import overridden
@@ -592,9 +593,26 @@ class Times(PanelTest):
     def test_too_little_time_is_said_before(self):
         self.settings.stop_by, self.settings.seconds = "seconds", 10.0
         self.settings.seeds = 16
-        for speed, said in ((16 * 8 * 100.0, "About 10 s at 16 × 8"), (16 * 8 * 2.0, "Too little here: at least 46 s")):
+        for speed, said in (
+            (16 * 8 * 100.0, "About 10 s at 16 × 8"),
+            (16 * 8 * 2.0, "Too little here: at least 2 min 1 s"),
+        ):
             with mock.patch.object(rendering, "speed", lambda speed=speed: speed):
                 self.assertIn(said, panels.estimate_text(self.scene))
+
+    def test_too_little_time_is_what_the_command_takes_for_it(self):
+        """The button's rule has the numbers of the refusal's."""
+        source = (ADDON.parents[1] / "native" / "report" / "converge.cpp").read_text(encoding="utf-8")
+        number = {name: float(value) for name, value in re.findall(r"constexpr \w+ (k\w+) = ([\d.]+);", source)}
+        self.assertEqual(estimate.FEWEST_SAMPLES, number["kFewestSamples"])
+        self.assertEqual(estimate.FEWEST_SEEDS, number["kFewestOfBudget"])
+        self.assertEqual(estimate.SURVEY_SAMPLES, number["kSurveySamples"])
+        self.assertEqual(estimate.MARGIN, number["kMargin"])
+        self.assertAlmostEqual(estimate.OWN_SHARE, number["kUsedShare"] - number["kReferenceShare"])
+        self.assertEqual(
+            (estimate.FEWEST_SAMPLES, estimate.FEWEST_SEEDS, estimate.CYCLES_SHARE, estimate.MARGIN),
+            (cycles.FEWEST_OF_BUDGET, cycles.FEWEST_SEEDS_OF_BUDGET, cycles.BUDGET_SHARE, cycles.MARGIN),
+        )
 
     def test_a_render_is_measured(self):
         rendering.note_speed(100.0, 2.0)

@@ -10,7 +10,10 @@ from .converge import Study, checkpoints
 REFERENCE_FACTOR = 16  # samples of the command's reference, over those of a run
 CYCLES_REFERENCE_FACTOR = 32  # of all of Cycles' reference images
 FEWEST_SAMPLES, FEWEST_SEEDS = 4, 4  # for which a budget has to suffice
+MEASURED_SAMPLES = 8  # of each configuration, and the first time once more, by which the command knows what one costs
+SURVEY_SAMPLES = 16  # which the command takes twice besides, to tell where samples go and what they cost
 OWN_SHARE, CYCLES_SHARE = 0.7, 0.9  # of a budget, for the runs
+MARGIN = 1.25  # of a time that is said to be enough: speeds vary
 GUESS = 400_000.0  # camera samples a second of a thread, where nothing has been rendered yet
 
 
@@ -50,14 +53,17 @@ def estimate(study: Study, pixels: int, cycles_seeds: int | None, speeds: Speeds
 
 
 def _needed(study: Study, pixels: int, cycles_seeds: int | None, speeds: Speeds) -> float:
+    """By the rules by which the command (native/report/converge.cpp) and cycles.py refuse a budget."""
     own = cycles = 0.0
     if speeds.own:
-        seeds = min(FEWEST_SEEDS, study.seeds)
-        own = pixels * FEWEST_SAMPLES * len(study.configurations) * seeds / speeds.own / OWN_SHARE
+        configurations, seeds = len(study.configurations), min(FEWEST_SEEDS, study.seeds)
+        measured = MEASURED_SAMPLES * (configurations + 1)
+        samples = FEWEST_SAMPLES * configurations * seeds + measured + 2 * SURVEY_SAMPLES
+        own = MARGIN * pixels * samples / speeds.own / OWN_SHARE
     if speeds.cycles and cycles_seeds is not None:
         seeds = min(FEWEST_SEEDS, cycles_seeds)
         samples = sum(checkpoints(FEWEST_SAMPLES)) * seeds + CYCLES_REFERENCE_FACTOR * FEWEST_SAMPLES
-        cycles = pixels * samples / speeds.cycles / CYCLES_SHARE
+        cycles = MARGIN * pixels * samples / speeds.cycles / CYCLES_SHARE
     return own if cycles_seeds is None else 2 * max(own, cycles)
 
 
