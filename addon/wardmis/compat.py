@@ -214,6 +214,11 @@ def uses_nodes(owner: Any) -> bool:
 BACKGROUND_LIGHTS_LAMPS = VERSION >= (4, 0, 0)
 
 
+def panorama_settings(camera: Any) -> Any:
+    """Who has the kind of a panoramic camera, and its angles: they were Cycles' own until 4.2. None where that add-on is off."""
+    return camera if hasattr(camera, "panorama_type") else getattr(camera, "cycles", None)
+
+
 # --- nodes ----------------------------------------------------------------------------------------------------------
 
 # Whose formulas this Blender's Cycles has: 3.4's (3), 4.3's (4) or 5.2's (5), which docs/scene-format.md calls `version`.

@@ -162,7 +162,11 @@ void useResolution(Scene& scene, const std::string& text) {
   if (std::sscanf(text.c_str(), "%dx%d%c", &w, &h, &rest) != 2 || w < 1 || h < 1 || w > 65536 || h > 65536)
     throw Error(ExitCode::kUsage, fmt::format("--resolution '{}'", text), "give WIDTHxHEIGHT, for example 1920x1080");
   Film& f = scene.film;
-  if (scene.camera) {
+  // panoramas but those with a sensor show all of their angles in any frame
+  const bool fitted =
+      scene.camera && (!scene.camera->panoramic() || scene.camera->projection == Projection::kFisheyeEquisolid ||
+                       scene.camera->projection == Projection::kFisheyePolynomial);
+  if (fitted) {
     // keep the larger side of the view plane, as another aspect would in Blender
     Camera& c = *scene.camera;
     const float aspect = static_cast<float>(w) / static_cast<float>(h), old = (c.right - c.left) / (c.top - c.bottom);

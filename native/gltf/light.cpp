@@ -99,12 +99,22 @@ Camera readCamera(const Json& json, const Json& node, const Affine& toWorld, con
     camera.clipFar = far;
   };
   if (const auto extension = json.extension("WARDMIS_scene")) {
-    constexpr std::pair<std::string_view, bool> kIsOrthographic[] = {{"perspective", false}, {"orthographic", true}};
-    if (const auto projection = extension->find("projection"))
-      camera.orthographic = projection->choice(kIsOrthographic);
+    constexpr std::pair<std::string_view, Projection> kProjections[] = {
+        {"perspective", Projection::kPerspective},
+        {"orthographic", Projection::kOrthographic},
+        {"equirectangular", Projection::kEquirectangular},
+        {"central-cylindrical", Projection::kCentralCylindrical},
+        {"fisheye-equidistant", Projection::kFisheyeEquidistant},
+        {"fisheye-equisolid", Projection::kFisheyeEquisolid},
+        {"fisheye-polynomial", Projection::kFisheyePolynomial},
+        {"mirror-ball", Projection::kMirrorBall},
+        {"equiangular-cube-face", Projection::kEquiangularCubeFace}};
+    if (const auto projection = extension->find("projection")) camera.projection = projection->choice(kProjections);
+    camera.fov = extension->numberOr("fov", camera.fov, 0);
+    if (camera.projection == Projection::kFisheyePolynomial) extension->at("polynomial").numbers(camera.polynomial);
     const Json plane = extension->at("viewPlane");
     const auto [left, right, bottom, top] = plane.numbers<4>();
-    if (!(left < right && bottom < top))
+    if (camera.panoramic() ? left == right || bottom == top : !(left < right && bottom < top))
       plane.failExpected("[left, right, bottom, top] with left < right and bottom < top");
     camera.left = left, camera.right = right, camera.bottom = bottom, camera.top = top;
     if (const auto clip = extension->find("clip")) {
@@ -122,10 +132,11 @@ Camera readCamera(const Json& json, const Json& node, const Affine& toWorld, con
   }
 
   constexpr std::pair<std::string_view, bool> kIsOrthographic[] = {{"perspective", false}, {"orthographic", true}};
-  camera.orthographic = json.at("type").choice(kIsOrthographic);
-  const Json lens = json.at(camera.orthographic ? "orthographic" : "perspective");
+  const bool orthographic = json.at("type").choice(kIsOrthographic);
+  if (orthographic) camera.projection = Projection::kOrthographic;
+  const Json lens = json.at(orthographic ? "orthographic" : "perspective");
   const float top =
-      camera.orthographic ? lens.at("ymag").number(1e-9f, 1e9f) : std::tan(lens.at("yfov").number(1e-4f, 3.14f) / 2);
+      orthographic ? lens.at("ymag").number(1e-9f, 1e9f) : std::tan(lens.at("yfov").number(1e-4f, 3.14f) / 2);
   const float right = top * static_cast<float>(film.width) / static_cast<float>(film.height);
   camera.left = -right, camera.right = right, camera.bottom = -top, camera.top = top;
   setClip(lens, lens.at("znear").number(0), lens.numberOr("zfar", camera.clipFar, 0));

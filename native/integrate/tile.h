@@ -112,6 +112,11 @@ void renderTile(const KernelInput<K>& in, const Tile& tile, FilmBuffer& film, Pi
         const Vec2f lens = in.camera.needsLens() ? in.sampler.get2D(key, Dimensions<K>::kLensPoint, s) : Vec2f{};
         const Ray ray = in.camera.ray(static_cast<float>(px) + side * (0.5f + offset.x),
                                       static_cast<float>(py) + side * (0.5f + offset.y), lens);
+        if (!(ray.tMax > 0)) [[unlikely]] {
+          pixel.alpha += 1;  // black, and no hole in the picture, as Cycles has it
+          pixel.add({0, 0, 0});
+          continue;
+        }
         const Rgb value = cameraSample<N, K>(in, ray, key, s, allocated, pixel, &film.sampleCounts[index * K],
                                              pilotPixel, moments, candidates, counts) *
                           exposure;

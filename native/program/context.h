@@ -88,8 +88,9 @@ struct ShadingContext {
   float index = 0, random = 0;
   // kReadsCamera; looks along +z, y is up
   Affine camera;  // to world; unit axes
-  bool orthographic = false;
+  bool orthographic = false, panoramic = false;
   float window[4] = {-1, 1, -1, 1};  // left, right, bottom, top of the border, at distance 1 (or in metres)
+  Varying panorama{};                // where a panoramic camera sees the point, in its window
   // kReadsRay
   PathState path;
   float rayLength = 0;

@@ -81,7 +81,7 @@ inline void read(Operation operation, const Operands& o, const ShadingContext& c
     case kCamera:
       return o.set(inCamera(c, shifted(c.position)));
     case kWindow:
-      return o.set(window(c, shifted(c.position)));
+      return o.set(c.panoramic ? shifted(c.panorama) : window(c, shifted(c.position)));
     case kParametric:
       return o.set(shifted(c.parametric));
     case kBackfacing:

@@ -146,15 +146,33 @@ struct Light {
   int maxBounces = 1024;  // it lights surfaces that a path has reached by at most so many
 };
 
+// How a camera takes directions to its plane: docs/scene-format.md. The panoramic ones come last.
+enum class Projection : uint8_t {
+  kPerspective,
+  kOrthographic,
+  kEquirectangular,
+  kCentralCylindrical,
+  kFisheyeEquidistant,
+  kFisheyeEquisolid,
+  kFisheyePolynomial,
+  kMirrorBall,
+  kEquiangularCubeFace
+};
+
 struct Camera {
   std::string name;
   Affine toWorld;  // unit axes, orthogonal unless its node is sheared; looks along -z
-  bool orthographic = false;
-  float left = -0.36f, right = 0.36f, bottom = -0.24f, top = 0.24f;  // full frame; distance 1, or metres (orthographic)
-  float clipNear = 0, clipFar = 1e30f;                               // planar depths
+  Projection projection = Projection::kPerspective;
+  float left = -0.36f, right = 0.36f, bottom = -0.24f, top = 0.24f;  // full frame, in what the projection measures in
+  float clipNear = 0, clipFar = 1e30f;                               // planar depths; of panoramas distances
+  float fov = 6.2831853f;                 // fisheyes: full angle, beyond which there is nothing
+  float polynomial[5] = {0, 0, 0, 0, 0};  // fisheye: angle from the axis, of powers of the distance from the centre
   float lensRadius = 0, focusDistance = 1;
   int blades = 0;  // < 3: round
   float bladeRotation = 0, bladeRatio = 1;
+
+  bool orthographic() const { return projection == Projection::kOrthographic; }
+  bool panoramic() const { return projection > Projection::kOrthographic; }
 };
 
 struct Film {

@@ -7,6 +7,7 @@
 #include "math/number.h"
 #include "math/warp.h"
 #include "world/accel.h"
+#include "world/panorama.h"
 
 namespace wardmis {
 
@@ -19,17 +20,20 @@ class CameraRays {
 
   bool needsLens() const { return camera_.lensRadius > 0; }
 
-  // (px, py): film position in pixels of the full frame from its bottom left; u: lens.
+  // (px, py): film position in pixels of the full frame from its bottom left; u: lens. Without length (tMax 0) where a
+  // panorama sees nothing.
   Ray ray(float px, float py, Vec2f u) const {
     const Camera& c = camera_;
     const float x = c.left + px / static_cast<float>(film_.width) * (c.right - c.left);
     const float y = c.bottom + py / static_cast<float>(film_.height) * (c.top - c.bottom);
+    if (c.panoramic()) [[unlikely]]
+      return panorama(x, y, u);
     Vec3f origin{0, 0, 0}, direction{x, y, -1};
-    if (c.orthographic) origin = {x, y, 0}, direction = {0, 0, -1};
+    if (c.orthographic()) origin = {x, y, 0}, direction = {0, 0, -1};
     if (c.lensRadius > 0) {
       const Vec3f focus = origin + direction * c.focusDistance;
-      const Vec2f lens = c.blades < 3 ? toDisk(u) : onPolygon(u);
-      origin += Vec3f{lens.x * c.lensRadius / c.bladeRatio, lens.y * c.lensRadius, 0};
+      const Vec2f lens = onLens(u);
+      origin += Vec3f{lens.x, lens.y, 0};
       direction = focus - origin;
     }
     // clip distances are planar depths: along the ray they stretch by |direction| / depth
@@ -42,10 +46,44 @@ class CameraRays {
     r.kind = kSeenByCamera;
     return r;
   }
-  // Planar depth of a point at distance t along a ray of this camera.
-  float depth(const Ray& r, float t) const { return dot(r.direction, toDepth_) * t; }
+  // Planar depth of a point at distance t along a ray of this camera; of a panorama its distance.
+  float depth(const Ray& r, float t) const {
+    if (camera_.panoramic()) return length(r.origin + r.direction * t - camera_.toWorld.t);
+    return dot(r.direction, toDepth_) * t;
+  }
 
  private:
+  // The lens stands across the view, whichever way that goes; it turns about the axis towards which its x would point,
+  // as in Cycles.
+  Ray panorama(float x, float y, Vec2f u) const {
+    const Camera& c = camera_;
+    Vec3f origin{0, 0, 0}, direction = panoramaDirection(c, x, y);
+    Ray r;
+    if (isBlack(direction)) {
+      r.tMax = 0;
+      return r;
+    }
+    if (c.lensRadius > 0) {
+      const bool mirror = c.projection == Projection::kMirrorBall;
+      const Vec3f axis = mirror ? Vec3f{1, 0, 0} : Vec3f{0, 0, -1};
+      const Vec3f across = axis - direction * dot(axis, direction);
+      const Vec3f lensX = dot(across, across) > 1e-12f ? normalize(across) : Framef::around(direction).x;
+      const Vec3f lensY = cross(direction, lensX) * (mirror ? -1.0f : 1.0f);
+      const Vec2f lens = onLens(u);
+      origin = lensX * lens.x + lensY * lens.y;
+      direction = direction * c.focusDistance - origin;
+    }
+    r.origin = c.toWorld.point(origin);
+    r.direction = normalize(c.toWorld.vector(direction));
+    r.tMin = c.clipNear;
+    r.tMax = c.clipFar;
+    r.kind = kSeenByCamera;
+    return r;
+  }
+  Vec2f onLens(Vec2f u) const {
+    const Vec2f lens = camera_.blades < 3 ? toDisk(u) : onPolygon(u);
+    return {lens.x * camera_.lensRadius / camera_.bladeRatio, lens.y * camera_.lensRadius};
+  }
   // Uniform on a regular polygon inscribed in the unit circle.
   Vec2f onPolygon(Vec2f u) const {
     const auto n = static_cast<float>(camera_.blades);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "program/vectors.h"
+#include "world/panorama.h"
 
 namespace wardmis {
 namespace {
@@ -42,9 +43,14 @@ struct Linear {
 float pixelSize(const Scene& scene, const ShadedPoint& p) {
   if (!scene.camera) return 1e-3f * p.rayLength;
   const Camera& c = *scene.camera;
+  if (c.panoramic()) {
+    const Vec3f view{-dot(p.wo, c.toWorld.x), -dot(p.wo, c.toWorld.y), -dot(p.wo, c.toWorld.z)};
+    const Vec2f at = panoramaPoint(c, p.path.depth == 0 ? view : Vec3f{0, 0, -1});
+    return panoramaPixel(c, scene.film, at) * (p.path.before + p.rayLength);
+  }
   const float w = (c.right - c.left) / static_cast<float>(scene.film.width),
               h = (c.top - c.bottom) / static_cast<float>(scene.film.height);
-  if (c.orthographic) return 0.5f * (w + h);
+  if (c.orthographic()) return 0.5f * (w + h);
   float spread = 0.5f * (w + h);
   if (p.path.depth == 0) {  // as directions turn from one pixel to the next
     const float x = dot(p.wo, c.toWorld.x), y = dot(p.wo, c.toWorld.y), z = std::abs(dot(p.wo, c.toWorld.z));
@@ -183,7 +189,7 @@ void fill(const Scene& scene, const ShadedPoint& p, const Program& program, Shad
     const Camera& camera = *scene.camera;
     const Affine& m = camera.toWorld;
     c.camera = {frame(m.x), frame(m.y), -frame(m.z), frame(m.t)};
-    c.orthographic = camera.orthographic;
+    c.orthographic = camera.orthographic();
     const Film& f = scene.film;
     const auto along = [](float from, float to, int k, int n) {
       return from + (to - from) * static_cast<float>(k) / static_cast<float>(n);
@@ -192,11 +198,24 @@ void fill(const Scene& scene, const ShadedPoint& p, const Program& program, Shad
     c.window[1] = along(camera.left, camera.right, f.x1, f.width);
     c.window[2] = along(camera.bottom, camera.top, f.y0, f.height);
     c.window[3] = along(camera.bottom, camera.top, f.y1, f.height);
+    if (camera.panoramic()) {
+      // steps of a pixel, not of a derivative: that is what a shift asks for
+      const auto seen = [&](Vec3f at) {
+        const Vec3f q = vectors::inversePoint(c.camera, at);
+        const Vec2f v = panoramaPoint(camera, safeNormalize(Vec3f{q.x, q.y, -q.z}));
+        return Vec3f{(v.x - c.window[0]) / (c.window[1] - c.window[0]),
+                     (v.y - c.window[2]) / (c.window[3] - c.window[2]), 0};
+      };
+      c.panoramic = true;
+      c.panorama.value = seen(c.position.value);
+      c.panorama.dx = seen(c.position.value + c.position.dx) - c.panorama.value;
+      c.panorama.dy = seen(c.position.value + c.position.dy) - c.panorama.value;
+    }
   }
   c.path = p.path;
   c.rayLength = p.rayLength;
   if (p.path.depth == 0 && scene.camera) {  // rays of the camera begin at its near plane, as Cycles' do
-    const float depth = std::abs(dot(p.wo, scene.camera->toWorld.z));
+    const float depth = scene.camera->panoramic() ? 1 : std::abs(dot(p.wo, scene.camera->toWorld.z));
     c.rayLength -= depth > 0 ? scene.camera->clipNear / depth : 0;
   }
 }

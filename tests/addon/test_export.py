@@ -490,9 +490,9 @@ class AsRendered(SceneTest):
                 bpy.ops.wardmis.export(filepath=str(Path(folder) / "none" / "scene.glb"))
 
     def test_failure_is_told(self):
-        self.scene.camera.data.type = "PANO"
+        self.scene.camera.data.clip_start = 1e6
         with tempfile.TemporaryDirectory() as folder:
-            with self.assertRaisesRegex(RuntimeError, "panoramic"):
+            with self.assertRaisesRegex(RuntimeError, "sees nothing"):
                 wardmis.export_scene(Path(folder) / "scene.glb")
             self.assertEqual(list(Path(folder).iterdir()), [])
 

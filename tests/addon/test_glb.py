@@ -314,6 +314,16 @@ class Content(GlbTest):
         }
         self.assertEqual((extension["film"], extension["notes"]), (film, ["a note"]))
 
+    def test_panorama(self):
+        data = scene()
+        data.camera.projection, data.camera.view_plane = "fisheye-polynomial", (-18, 18, -12, 12)
+        data.camera.fov, data.camera.polynomial = 3.0, (0.0, 0.02, 0.0, 0.0, 0.0)
+        camera = self.write(data)[0]["cameras"][0]
+        self.assertEqual(camera["perspective"]["aspectRatio"], 1)
+        extension = camera["extensions"]["WARDMIS_scene"]
+        self.assertEqual((extension["projection"], extension["viewPlane"]), ("fisheye-polynomial", [-18, 18, -12, 12]))
+        self.assertEqual((extension["fov"], extension["polynomial"]), (3.0, [0, 0.02, 0, 0, 0]))
+
     def test_orthographic_camera_for_other_viewers(self):
         data = scene()
         data.camera.projection, data.camera.view_plane = "orthographic", (-2, 4, -1, 1)

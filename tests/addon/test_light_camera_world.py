@@ -356,6 +356,39 @@ class Camera(SceneTest):
         with self.assertRaisesRegex(ExportError, "camera 'Camera' sees nothing: its Clip Start"):
             self.gather()
 
+    def test_panoramas(self):
+        data, render = self.camera.data, self.scene.render
+        data.type, data.shift_x, data.shift_y = "PANO", 0.1, 0.25
+        render.resolution_x, render.resolution_y = 300, 200
+        settings = compat.panorama_settings(data)
+        settings.fisheye_fov, settings.fisheye_lens, data.sensor_width = 2.0, 9.0, 36.0
+        settings.longitude_min, settings.latitude_max = -1.0, 0.5
+        half = math.pi / 4
+        expected = {
+            "EQUIRECTANGULAR": ("equirectangular", (-1, math.pi, -math.pi / 2, 0.5)),
+            "EQUIANGULAR_CUBEMAP_FACE": ("equiangular-cube-face", (-half, half, -half, half)),
+            "MIRRORBALL": ("mirror-ball", (-1, 1, -1, 1)),
+            "FISHEYE_EQUIDISTANT": ("fisheye-equidistant", (-1, 1, -1, 1)),
+            "FISHEYE_EQUISOLID": ("fisheye-equisolid", (-2, 2, -4 / 3, 4 / 3)),
+            "FISHEYE_LENS_POLYNOMIAL": ("fisheye-polynomial", (-18, 18, -12, 12)),
+        }
+        kinds = {e.identifier for e in settings.bl_rna.properties["panorama_type"].enum_items}
+        if "CENTRAL_CYLINDRICAL" in kinds:
+            settings.central_cylindrical_radius, settings.central_cylindrical_range_v_max = 2, 3
+            expected["CENTRAL_CYLINDRICAL"] = ("central-cylindrical", (-math.pi, math.pi, -0.5, 1.5))
+        self.assertEqual(set(expected), kinds)
+        for kind, (projection, (left, right, bottom, top)) in expected.items():
+            with self.subTest(kind):
+                settings.panorama_type = kind
+                camera = self.gather().camera
+                self.assertEqual(camera.projection, projection)
+                x, y = 0.1 * (right - left), 0.25 * (top - bottom)
+                np.testing.assert_allclose(camera.view_plane, (left + x, right + x, bottom + y, top + y), 1e-6)
+                self.assertEqual(camera.fov, 2.0 if "FISHEYE" in kind else None)
+        settings.panorama_type, settings.longitude_max = "EQUIRECTANGULAR", -1.0
+        with self.assertRaisesRegex(ExportError, "camera 'Camera' sees nothing: its panorama"):
+            self.gather()
+
     def test_no_camera(self):
         self.scene.camera = None
         with self.assertRaisesRegex(ExportError, "no active camera"):

@@ -343,8 +343,8 @@ class Failures(RenderTest):
     def test_no_camera(self):
         self.check("no camera", "bpy.data.objects.remove(scene.camera)\n")
 
-    def test_panoramic_camera(self):
-        self.check("camera 'Camera' is panoramic", "scene.camera.data.type = 'PANO'\n")
+    def test_camera_that_sees_nothing(self):
+        self.check("camera 'Camera' sees nothing", "scene.camera.data.clip_start = 1e6\n")
 
     def test_stereoscopy(self):
         self.check("stereoscopy is not supported", "scene.render.use_multiview = True\n")

@@ -3,16 +3,28 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 
+from .. import compat
 from .context import ExportError
 from .model import CameraData, FilmData
 
 # Cycles' own limits
 NEAREST_FOCUS = 1e-5
 SMALLEST_FSTOP = 1e-5
+
+PANORAMAS = {
+    "EQUIRECTANGULAR": "equirectangular",
+    "CENTRAL_CYLINDRICAL": "central-cylindrical",
+    "EQUIANGULAR_CUBEMAP_FACE": "equiangular-cube-face",
+    "MIRRORBALL": "mirror-ball",
+    "FISHEYE_EQUIDISTANT": "fisheye-equidistant",
+    "FISHEYE_EQUISOLID": "fisheye-equisolid",
+    "FISHEYE_LENS_POLYNOMIAL": "fisheye-polynomial",
+}
 
 
 def full_resolution(render: Any) -> tuple[int, int]:
@@ -55,11 +67,17 @@ def export_camera(camera: Any, render: Any) -> CameraData:
             f"object '{camera.name}' is the active camera, but is no camera; choose a camera in Scene Properties"
         )
     data = camera.data
-    if data.type not in {"PERSP", "ORTHO"}:
+    if data.type not in {"PERSP", "ORTHO", "PANO"}:
         raise ExportError(
-            f"camera '{camera.name}' is panoramic, which WardMIS does not render; set Lens > Type to Perspective or Orthographic"
+            f"camera '{camera.name}' is a custom one, made by a script, which WardMIS does not render; "
+            "set Lens > Type to Perspective, Orthographic or Panoramic"
         )
-    orthographic = data.type == "ORTHO"
+    resolution = full_resolution(render)
+    if data.type == "PANO":
+        projection, plane, extra = panorama(camera.name, data, render, resolution)
+    else:
+        projection = "orthographic" if data.type == "ORTHO" else "perspective"
+        plane, extra = view_plane(data, render, resolution), {}
     matrix = np.array(camera.matrix_world)
     lengths = np.linalg.norm(matrix[:3, :3], axis=0)
     if not np.isfinite(matrix).all() or not lengths.all():
@@ -72,13 +90,14 @@ def export_camera(camera: Any, render: Any) -> CameraData:
     result = CameraData(
         camera.name,
         matrix,
-        "orthographic" if orthographic else "perspective",
-        view_plane(data, render, full_resolution(render)),
+        projection,
+        plane,
         (data.clip_start, data.clip_end),
+        **extra,
     )
     if data.dof.use_dof:
         aperture = max(data.dof.aperture_fstop, SMALLEST_FSTOP) * 2
-        result.lens_radius = (1.0 if orthographic else data.lens * 1e-3) / aperture
+        result.lens_radius = (1.0 if projection == "orthographic" else data.lens * 1e-3) / aperture
         result.focus_distance = max(_focus_distance(camera, data.dof, matrix), NEAREST_FOCUS)
         result.blades = data.dof.aperture_blades if data.dof.aperture_blades > 2 else 0
         result.blade_rotation = data.dof.aperture_rotation
@@ -88,11 +107,7 @@ def export_camera(camera: Any, render: Any) -> CameraData:
 
 def view_plane(data: Any, render: Any, resolution: tuple[int, int]) -> tuple[float, float, float, float]:
     """left, right, bottom, top: at distance 1 for a perspective camera, in metres for an orthographic one."""
-    x_ratio = resolution[0] * render.pixel_aspect_x
-    y_ratio = resolution[1] * render.pixel_aspect_y
-    horizontal = x_ratio > y_ratio if data.sensor_fit == "AUTO" else data.sensor_fit == "HORIZONTAL"
-    sensor = data.sensor_height if data.sensor_fit == "VERTICAL" else data.sensor_width
-    aspect = x_ratio / y_ratio if horizontal else y_ratio / x_ratio
+    horizontal, aspect, sensor = _fit(data, render, resolution)
     x_half, y_half = (aspect, 1.0) if horizontal else (1.0, aspect)
     # the longer side is 2 aspect long; shifts are measured in it
     scale = data.ortho_scale / (2 * aspect) if data.type == "ORTHO" else 0.5 * sensor / data.lens / aspect
@@ -104,6 +119,58 @@ def view_plane(data: Any, render: Any, resolution: tuple[int, int]) -> tuple[flo
         (y_shift - y_half) * scale,
         (y_shift + y_half) * scale,
     )
+
+
+def panorama(
+    name: str, data: Any, render: Any, resolution: tuple[int, int]
+) -> tuple[str, tuple[float, float, float, float], dict[str, Any]]:
+    """The projection, its view plane, and what else the camera has of it, as docs/scene-format.md has them."""
+    settings = compat.panorama_settings(data)
+    if settings is None:
+        raise ExportError(
+            f"camera '{name}' is panoramic, and the settings of that are Cycles': turn on that add-on in the Preferences"
+        )
+    kind = settings.panorama_type
+    horizontal, aspect, sensor = _fit(data, render, resolution)
+    width, height = (sensor, sensor / aspect) if horizontal else (sensor / aspect, sensor)
+    half, extra = math.pi / 4, {}
+    if kind == "EQUIRECTANGULAR":
+        plane = (settings.longitude_min, settings.longitude_max, settings.latitude_min, settings.latitude_max)
+    elif kind == "CENTRAL_CYLINDRICAL":
+        z = (
+            v / settings.central_cylindrical_radius
+            for v in (settings.central_cylindrical_range_v_min, settings.central_cylindrical_range_v_max)
+        )
+        plane = (settings.central_cylindrical_range_u_min, settings.central_cylindrical_range_u_max, *z)
+    elif kind == "EQUIANGULAR_CUBEMAP_FACE":
+        plane = (-half, half, -half, half)
+    elif kind == "MIRRORBALL":
+        plane = (-1.0, 1.0, -1.0, 1.0)
+    else:
+        extra["fov"] = settings.fisheye_fov
+        half = settings.fisheye_fov / 2
+        if kind == "FISHEYE_EQUIDISTANT":
+            plane = (-half, half, -half, half)
+        else:
+            unit = settings.fisheye_lens if kind == "FISHEYE_EQUISOLID" else 1.0  # a lens, or millimetres
+            plane = (-width / 2 / unit, width / 2 / unit, -height / 2 / unit, height / 2 / unit)
+        if kind == "FISHEYE_LENS_POLYNOMIAL":
+            extra["polynomial"] = tuple(-getattr(settings, f"fisheye_polynomial_k{i}") for i in range(5))
+    left, right, bottom, top = plane
+    if left == right or bottom == top:
+        raise ExportError(f"camera '{name}' sees nothing: its panorama spans no angle; correct its Lens settings")
+    # shifts are measured in the frame
+    x, y = data.shift_x * (right - left), data.shift_y * (top - bottom)
+    return PANORAMAS[kind], (left + x, right + x, bottom + y, top + y), extra
+
+
+def _fit(data: Any, render: Any, resolution: tuple[int, int]) -> tuple[bool, float, float]:
+    """Whether the sensor's size is the frame's width (or its height), that divided by the other side, and the size."""
+    x_ratio = resolution[0] * render.pixel_aspect_x
+    y_ratio = resolution[1] * render.pixel_aspect_y
+    horizontal = x_ratio > y_ratio if data.sensor_fit == "AUTO" else data.sensor_fit == "HORIZONTAL"
+    sensor = data.sensor_height if data.sensor_fit == "VERTICAL" else data.sensor_width
+    return horizontal, x_ratio / y_ratio if horizontal else y_ratio / x_ratio, sensor
 
 
 def _focus_distance(camera: Any, dof: Any, matrix: np.ndarray) -> float:

@@ -44,6 +44,7 @@ ARRAY_BUFFER, INDEX_BUFFER = 34962, 34963
 WRAP = {"repeat": 10497, "clamp": 33071, "mirror": 33648, "clip": 33071}
 NEAREST, LINEAR = 9728, 9729
 CORE_IMAGES = {"image/png", "image/jpeg"}
+PANORAMA_OF_OTHERS = (-1.0, 1.0, -1.0, 1.0)
 WRITE_STEP = 16 << 20
 MAX_BYTES = 2**32 - 1  # a GLB counts its bytes in 32 bits
 
@@ -483,8 +484,14 @@ def _camera(camera: CameraData) -> dict[str, Any]:
         "bladeRotation": camera.blade_rotation,
         "bladeRatio": camera.blade_ratio,
     }
+    if camera.fov is not None:
+        extension["fov"] = camera.fov
+    if camera.polynomial is not None:
+        extension["polynomial"] = list(camera.polynomial)
     core: dict[str, Any]
-    if camera.projection == "perspective":
+    if camera.projection != "orthographic":  # a panorama is none of core glTF's: others see its middle
+        if camera.projection != "perspective":
+            left, right, bottom, top = PANORAMA_OF_OTHERS
         shape = {"yfov": 2 * math.atan((top - bottom) / 2), "aspectRatio": (right - left) / (top - bottom)}
         core = {"type": "perspective", "perspective": {**shape, "znear": near, "zfar": far}}
     else:

@@ -220,7 +220,7 @@ class LightData:
 class CameraData:
     name: str
     matrix: np.ndarray  # without scale
-    projection: str  # "perspective", "orthographic"
+    projection: str  # as docs/scene-format.md calls it
     view_plane: tuple[float, float, float, float]  # left, right, bottom, top of the full frame
     clip: tuple[float, float]
     lens_radius: float = 0.0
@@ -228,6 +228,8 @@ class CameraData:
     blades: int = 0
     blade_rotation: float = 0.0
     blade_ratio: float = 1.0
+    fov: float | None = None  # fisheyes: full angle
+    polynomial: tuple[float, ...] | None = None  # fisheye-polynomial: five
 
 
 @dataclass

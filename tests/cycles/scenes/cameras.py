@@ -5,6 +5,7 @@ import math
 
 import bpy
 from stage import ball, box, camera, collection, daylight, diffuse, floor, instance, place, scene
+from wardmis import compat
 
 
 def things():
@@ -121,3 +122,71 @@ def border_uncropped():
     settings = bpy.context.scene.render
     settings.use_border, settings.use_crop_to_border = True, False
     settings.border_min_x, settings.border_max_x, settings.border_min_y, settings.border_max_y = 0.25, 0.75, 0.25, 0.75
+
+
+def panorama(kind, **settings):
+    """In the midst of things, looking a little down; outside of what it sees the picture is black."""
+    data = things()
+    for x, y in ((-3, -3), (2.5, -4), (4, 2), (-4, 3)):
+        box(diffuse((0.3 + 0.1 * x % 1, 0.5, 0.4)), location=(x, y, 0.7), scale=(0.5, 0.7, 0.7))
+    made = bpy.context.scene.camera
+    made.location, made.rotation_euler = (0.3, -2.4, 1.6), (1.3, 0.1, 0.2)
+    data.type, data.clip_start = "PANO", 0.2
+    owner = compat.panorama_settings(data)
+    owner.panorama_type = kind
+    for name, value in settings.items():
+        setattr(owner, name, value)
+    return data
+
+
+@scene
+def equirectangular():
+    panorama("EQUIRECTANGULAR", latitude_min=-1.2, latitude_max=0.9, longitude_min=-2.5, longitude_max=3.0)
+
+
+@scene
+def fisheye_equidistant():
+    data = panorama("FISHEYE_EQUIDISTANT", fisheye_fov=3.4)
+    data.shift_x = 0.07
+
+
+@scene
+def fisheye_equisolid():
+    data = panorama("FISHEYE_EQUISOLID", fisheye_lens=8.0, fisheye_fov=2.8)
+    data.sensor_fit, data.sensor_height, data.shift_y = "VERTICAL", 26, -0.05
+    bpy.context.scene.render.film_transparent = True
+
+
+@scene
+def fisheye_lens_polynomial():
+    panorama("FISHEYE_LENS_POLYNOMIAL", fisheye_fov=1.1, fisheye_polynomial_k1=-0.03, fisheye_polynomial_k3=4e-5)
+    bpy.context.scene.render.pixel_aspect_x = 1.3
+
+
+@scene
+def mirror_ball():
+    panorama("MIRRORBALL")
+
+
+@scene
+def equiangular_cube_face():
+    panorama("EQUIANGULAR_CUBEMAP_FACE")
+
+
+@scene(since=(4, 3))
+def central_cylindrical():
+    panorama("CENTRAL_CYLINDRICAL", central_cylindrical_radius=1.5, central_cylindrical_range_v_max=0.8)
+
+
+@scene
+def panoramic_lens():
+    data = panorama("EQUIRECTANGULAR", latitude_min=-1.0, latitude_max=0.6, longitude_min=-1.0, longitude_max=1.2)
+    data.dof.use_dof, data.dof.focus_distance, data.dof.aperture_fstop = True, 2.5, 0.08
+    data.dof.aperture_blades, data.dof.aperture_rotation, data.dof.aperture_ratio = 3, 0.5, 1.4
+
+
+@scene
+def mirror_ball_lens():
+    data = panorama("MIRRORBALL")
+    data.dof.use_dof, data.dof.focus_distance, data.dof.aperture_fstop = True, 2.5, 0.1
+    data.dof.aperture_blades, data.dof.aperture_rotation = 3, 0.5

@@ -700,6 +700,13 @@ TEST(Glb, RefusesHostileScenes) {
       {"light: refers to lights[4]", [](GlbBuilder& b) { b.root["nodes"][0]["extensions"]["WARDMIS_scene"]["light"] = 4; }},
       {"camera: nodes[0] has no camera", extension({{"camera", 0}})},
       {"cameras[0].extensions.WARDMIS_scene.viewPlane: expected [left", camera({{"viewPlane", {1, -1, -1, 1}}})},
+      {"viewPlane: expected [left", camera({{"projection", "equirectangular"}, {"viewPlane", {1, 1, -1, 1}}})},
+      {"projection: expected", camera({{"projection", "pinhole"}, {"viewPlane", {-1, 1, -1, 1}}})},
+      {"polynomial", camera({{"projection", "fisheye-polynomial"}, {"viewPlane", {-1, 1, -1, 1}}})},
+      {"polynomial: expected",
+       camera({{"projection", "fisheye-polynomial"}, {"viewPlane", {-1, 1, -1, 1}}, {"polynomial", {0, 1}}})},
+      {"fov: expected",
+       camera({{"projection", "fisheye-equidistant"}, {"viewPlane", {-1, 1, -1, 1}}, {"fov", -1}})},
       {"clip: expected the near clip distance below", camera({{"viewPlane", {-1, 1, -1, 1}}, {"clip", {5, 1}}})},
       {"'Square': carries a camera, but its scale is 0",
        [camera](GlbBuilder& b) {
