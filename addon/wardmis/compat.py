@@ -219,6 +219,30 @@ def panorama_settings(camera: Any) -> Any:
     return camera if hasattr(camera, "panorama_type") else getattr(camera, "cycles", None)
 
 
+def uses_motion_blur(scene: Any, layer: Any) -> bool:
+    return bool(scene.render.use_motion_blur) and bool(getattr(layer, "use_motion_blur", True))
+
+
+def motion_blur_owner(scene: Any) -> Any:
+    """Who has `motion_blur_position`: it was Cycles' own until 4.2. None where that add-on is off."""
+    return scene.render if hasattr(scene.render, "motion_blur_position") else getattr(scene, "cycles", None)
+
+
+def motion_blur_position(scene: Any) -> str:
+    return str(getattr(motion_blur_owner(scene), "motion_blur_position", "CENTER"))
+
+
+def rolling_shutter(scene: Any) -> float | None:
+    """The part of the shutter's time that each line has, where lines have their own; it is Cycles' setting."""
+    cycles: Any = getattr(scene, "cycles", None)
+    return cycles.rolling_shutter_duration if getattr(cycles, "rolling_shutter_type", "NONE") == "TOP" else None
+
+
+def motion_settings(obj: Any) -> Any:
+    """An object's `use_motion_blur`, `use_deform_motion` and `motion_steps`; None where Cycles, whose they are, is off."""
+    return getattr(obj, "cycles", None)
+
+
 # --- nodes ----------------------------------------------------------------------------------------------------------
 
 # Whose formulas this Blender's Cycles has: 3.4's (3), 4.3's (4) or 5.2's (5), which docs/scene-format.md calls `version`.
@@ -275,6 +299,16 @@ else:
 
 
 # --- images of a render ----------------------------------------------------------------------------------------------
+
+# What Blender calls passes that render engines have in common, by what `wardmis --passes` does
+PASS_NAMES = {
+    "position": "Position",
+    "uv": "UV",
+    "object-index": "Object Index" if VERSION >= (5, 0, 0) else "IndexOB",
+    "material-index": "Material Index" if VERSION >= (5, 0, 0) else "IndexMA",
+    "emission": "Emission" if VERSION >= (5, 0, 0) else "Emit",
+    "environment": "Environment" if VERSION >= (5, 0, 0) else "Env",
+}
 
 LONGEST_CHANNEL = (
     62  # bytes of a channel's name in an OpenEXR file, "<layer>.<pass>.<channel>": Blender cuts longer ones

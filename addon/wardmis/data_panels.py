@@ -28,6 +28,8 @@ class WARDMIS_OBJECT_PT_visibility(Panel, bpy.types.Panel):
         shown = column.column(heading="Show In")
         shown.prop(obj, "hide_viewport", text="Viewports", toggle=False, invert_checkbox=True)
         shown.prop(obj, "hide_render", text="Renders", toggle=False, invert_checkbox=True)
+        if obj.type in SURFACES:
+            column.column(heading="Mask").prop(obj, "is_holdout", text="Holdout")
 
 
 class WARDMIS_OBJECT_PT_ray_visibility(Panel, bpy.types.Panel):
@@ -46,6 +48,30 @@ class WARDMIS_OBJECT_PT_ray_visibility(Panel, bpy.types.Panel):
         for kind in ("camera", "diffuse", "glossy", "shadow"):
             if kind != "shadow" or obj.type != "LIGHT":
                 column.prop(obj, f"visible_{kind}", text=kind.title())
+
+
+class WARDMIS_OBJECT_PT_motion_blur(Panel, bpy.types.Panel):
+    bl_label = "Motion Blur"
+    bl_context = "object"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        obj = context.object
+        moves = (
+            obj is not None and obj.type in SURFACES | {"CAMERA", "EMPTY"} and compat.motion_settings(obj) is not None
+        )
+        return moves and super().poll(context)
+
+    def draw_header(self, context: Any) -> None:
+        self.layout.prop(compat.motion_settings(context.object), "use_motion_blur", text="")
+
+    def draw(self, context: Any) -> None:
+        settings, column = compat.motion_settings(context.object), self._column()
+        column.active = context.scene.render.use_motion_blur and settings.use_motion_blur
+        column.prop(settings, "motion_steps", text="Steps")
+        if context.object.type != "CAMERA":
+            column.prop(settings, "use_deform_motion", text="Deformation")
 
 
 class LightPanel(Panel):
@@ -142,6 +168,7 @@ class WARDMIS_LIGHT_PT_nodes(LightPanel, bpy.types.Panel):
 _CLASSES = (
     WARDMIS_OBJECT_PT_visibility,
     WARDMIS_OBJECT_PT_ray_visibility,
+    WARDMIS_OBJECT_PT_motion_blur,
     WARDMIS_LIGHT_PT_light,
     WARDMIS_LIGHT_PT_beam_shape,
     WARDMIS_LIGHT_PT_nodes,

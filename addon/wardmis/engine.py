@@ -22,7 +22,7 @@ from . import compat, light_paths, rendering, sharing, temporary, warnings
 from .export import ExportCancelled, ExportError, export_depsgraph
 from .export.camera import border, full_resolution
 from .exr import read_header, read_pass
-from .passes import not_available, register_passes, wanted
+from .passes import not_available, passes_option, register_passes
 from .preferences import renderer_path
 from .process import Renderer, RendererError
 from .seed import seed_of
@@ -162,8 +162,13 @@ class _Render:
         self._show_text("Exporting the scene")
         for name in not_available(self.layer):
             self._warn(f"view layer '{self.layer.name}': there is no pass {name}; it is left out")
-        for note in export_depsgraph(self.depsgraph, path, self.engine.camera_override, self._stopped):
+        for note in self._exported(path):
             self._warn(note)
+
+    def _exported(self, path: Path) -> list[str]:
+        """Writes the scene; returns what there is to tell."""
+        engine = self.engine
+        return export_depsgraph(self.depsgraph, path, engine.camera_override, self._stopped, engine.frame_set)
 
     def _check_room_for_output(self, size: int) -> None:
         """Raises ExportError where Blender is about to save the image to a disk without room for `size` bytes.
@@ -192,7 +197,7 @@ class _Render:
     def _arguments(self) -> list[str]:
         settings, render = self.scene.wardmis, self.scene.render
         arguments = [self.scene_path, "-o", self.image_path, f"--layer={self.layer.name}"]
-        arguments += ["--passes", ",".join(wanted(self.layer)), "--progress", "json", "--watch-stdin"]
+        arguments += ["--passes", passes_option(self.layer), "--progress", "json", "--watch-stdin"]
         if not bpy.app.background:  # nobody watches
             arguments += ["--preview", self.preview_path]
         arguments += ["--integrand", settings.integrand, "--integrator", settings.integrator]

@@ -8,7 +8,7 @@ from typing import Any
 
 import bpy
 
-from . import light_paths
+from . import compat, light_paths
 from .engine import WARDMIS_RenderEngine
 from .layout import draw_text
 from .sharing import uses_pilot, yields
@@ -141,6 +141,28 @@ class WARDMIS_RENDER_PT_simplify(RenderPanel, bpy.types.Panel):
             group.prop(render, f"simplify_child_particles{suffix}", text="Child Particles")
 
 
+class WARDMIS_RENDER_PT_motion_blur(RenderPanel, bpy.types.Panel):
+    bl_label = "Motion Blur"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context: Any) -> None:
+        self.layout.prop(context.scene.render, "use_motion_blur", text="")
+
+    def draw(self, context: Any) -> None:
+        scene, column = context.scene, self._column()
+        column.active = scene.render.use_motion_blur
+        owner = compat.motion_blur_owner(scene)
+        if owner is not None:
+            column.prop(owner, "motion_blur_position", text="Position")
+        column.prop(scene.render, "motion_blur_shutter")
+        cycles: Any = getattr(scene, "cycles", None)  # the settings that the export reads
+        if hasattr(cycles, "rolling_shutter_type"):
+            column.prop(cycles, "rolling_shutter_type", text="Rolling Shutter")
+            _row(column, cycles.rolling_shutter_type != "NONE").prop(cycles, "rolling_shutter_duration")
+        column.label(text="Shutter Curve:")
+        self.layout.template_curve_mapping(scene.render, "motion_blur_shutter_curve")
+
+
 class WARDMIS_RENDER_PT_film(RenderPanel, bpy.types.Panel):
     bl_label = "Film"
     bl_options = {"DEFAULT_CLOSED"}
@@ -172,7 +194,14 @@ class WARDMIS_VIEWLAYER_PT_passes(Panel, bpy.types.Panel):
         data = column.column(heading="Data")
         data.prop(layer, "use_pass_z", text="Depth")
         data.prop(layer, "use_pass_normal", text="Normal")
+        for name, text in (("position", "Position"), ("uv", "UV"), ("object_index", "Object Index")):
+            data.prop(layer, f"use_pass_{name}", text=text)
+        data.prop(layer, "use_pass_material_index", text="Material Index")
         data.prop(layer.wardmis, "use_pass_albedo")
+        column.separator()
+        light = column.column(heading="Light")
+        light.prop(layer, "use_pass_emit", text="Emission")
+        light.prop(layer, "use_pass_environment", text="Environment")
         column.separator()
         noise = column.column(heading="Samples")
         noise.prop(layer.wardmis, "use_pass_variance")
@@ -207,6 +236,7 @@ _CLASSES = (
     WARDMIS_RENDER_PT_allocation,
     WARDMIS_RENDER_PT_light_paths,
     WARDMIS_RENDER_PT_simplify,
+    WARDMIS_RENDER_PT_motion_blur,
     WARDMIS_RENDER_PT_film,
     WARDMIS_RENDER_PT_performance,
     WARDMIS_VIEWLAYER_PT_passes,

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The passes of a render, as docs/command.md names them: one table for the panel, the compositor, the command and the file.
 
-A pass is made where the view layer asks for it. Depth and Normal are asked for by Blender's own settings, as for Cycles, the others
-by `view_layer.wardmis`. Blender complains of a registered pass that a file lacks, so that a preview has all of them, too.
+A pass is made where the view layer asks for it. Those that Cycles has, too, are asked for by Blender's own settings, the others by
+`view_layer.wardmis`. Blender complains of a registered pass that a file lacks, so that a preview has all of them, too.
 """
 
 from __future__ import annotations
@@ -12,6 +12,8 @@ from typing import Any, NamedTuple
 
 import bpy
 from bpy.props import BoolProperty, PointerProperty
+
+from . import compat
 
 
 class Pass(NamedTuple):
@@ -30,9 +32,29 @@ PASSES = (
     Pass("Allocation Lobe", "X", "VALUE", "allocation"),
     Pass("Allocation Cosine", "X", "VALUE", "allocation"),
     Pass("Allocation Light", "X", "VALUE", "allocation"),
+    *(
+        Pass(compat.PASS_NAMES[group], channels, kind, group)
+        for group, channels, kind in (
+            ("position", "XYZ", "VECTOR"),
+            ("uv", "UVA", "VECTOR"),
+            ("object-index", "X", "VALUE"),
+            ("material-index", "X", "VALUE"),
+            ("emission", "RGB", "COLOR"),
+            ("environment", "RGB", "COLOR"),
+        )
+    ),
 )
 # Blender's own that this engine has, and those that are no pass of a render engine or change none
-BLENDERS = {"use_pass_z": "depth", "use_pass_normal": "normal"}
+BLENDERS = {
+    "use_pass_z": "depth",
+    "use_pass_normal": "normal",
+    "use_pass_position": "position",
+    "use_pass_uv": "uv",
+    "use_pass_object_index": "object-index",
+    "use_pass_material_index": "material-index",
+    "use_pass_emit": "emission",
+    "use_pass_environment": "environment",
+}
 OTHERS = {"use_pass_combined", "use_pass_cryptomatte_accurate", "use_pass_grease_pencil"}
 
 
@@ -70,6 +92,12 @@ def wanted(layer: Any) -> list[str]:
     asked = {"combined", *(group for flag, group in BLENDERS.items() if getattr(layer, flag))}
     asked |= {flag.removeprefix("use_pass_") for flag in _own_flags() if getattr(layer.wardmis, flag)}
     return list(dict.fromkeys(p.group for p in PASSES if p.group in asked))
+
+
+def passes_option(layer: Any) -> str:
+    """What `--passes` is given: with the names that this Blender has for its own."""
+    names = compat.PASS_NAMES
+    return ",".join(f"{group}={names[group]}" if group in names else group for group in wanted(layer))
 
 
 def not_available(layer: Any) -> Iterator[str]:

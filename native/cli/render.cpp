@@ -124,15 +124,32 @@ json statisticsJson(const std::string& path, const RenderSettings& settings, con
 // so that who asked for it knows what the file holds.
 std::vector<PassInfo> choosePasses(const std::string& list, TechniqueMask techniques,
                                    const std::vector<std::string>& names) {
-  if (list.empty()) return passesFor(techniques, names);
   std::vector<PassInfo> chosen;
-  for (const std::string& want : CLI::detail::split(list, ',')) {
+  if (list.empty()) {
+    for (const PassInfo& p : passesFor(techniques, names))
+      if (!p.data) chosen.push_back(p);
+    return chosen;
+  }
+  for (const std::string& each : CLI::detail::split(list, ',')) {
+    const size_t equals = each.find('=');
+    const std::string want = each.substr(0, equals);
     bool known = false;
-    for (const PassInfo& p : passesFor(~TechniqueMask{0}, names))
-      if (p.group == want) chosen.push_back(p), known = true;
+    for (PassInfo p : passesFor(~TechniqueMask{0}, names))
+      if (p.group == want) {
+        known = true;
+        if (equals != std::string::npos) {
+          if (!p.data || equals + 1 == each.size() || each.find('.') != std::string::npos)
+            throw Error(
+                ExitCode::kUsage, fmt::format("--passes: '{}' cannot be a name of that pass", each),
+                "names are for position, uv, object-index, material-index, emission and environment, and have no dot");
+          p.name = each.substr(equals + 1);
+        }
+        chosen.push_back(std::move(p));
+      }
     if (!known)
       throw Error(ExitCode::kUsage, fmt::format("--passes: there is no pass '{}'", want),
-                  "known: combined, depth, normal, albedo, variance, allocation");
+                  "known: combined, depth, normal, albedo, variance, allocation, position, uv, object-index, "
+                  "material-index, emission, environment");
   }
   return chosen;
 }
@@ -147,7 +164,8 @@ int run(Options& o) {
   const auto start = Clock::now();
   RenderSettings s = o.settings.chosen();
   s.spp = o.spp, s.seconds = o.seconds, s.seed = o.seed, s.threads = o.threads;
-  choosePasses(o.passes, 0, {"any"});  // whether they exist
+  for (const PassInfo& p : choosePasses(o.passes, 0, {"any"}))  // whether they exist
+    s.data = s.data || p.data;
   checkDistinct({{"SCENE", o.scene}, {"--output", o.output}, {"--stats", o.stats}, {"--preview", o.preview}});
   for (const std::string* path : {&o.output, &o.stats, &o.preview})
     if (!path->empty()) checkWritable(*path);
@@ -276,7 +294,10 @@ Verb addRender(CLI::App& app) {
   app.add_option("--layer", o->layer, "first part of the EXR's channel names")
       ->check(notLonger(kLongestLayer))
       ->capture_default_str();
-  app.add_option("--passes", o->passes, "of combined,depth,normal,albedo,variance,allocation (default: all)");
+  app.add_option(
+      "--passes", o->passes,
+      "of combined,depth,normal,albedo,variance,allocation (default: all of these), position,uv,object-index,"
+      "material-index,emission,environment; of the latter also PASS=NAME, its name in the file");
   app.add_option("--stats", o->stats, "write statistics to this JSON file");
   app.add_option("--progress", o->progress, "bar, json or none")
       ->check(CLI::IsMember({"auto", "bar", "json", "none"}))

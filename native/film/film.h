@@ -27,11 +27,24 @@ struct Pixel {
   }
 };
 
+// What the camera meets first, for compositing: kept where a pass of it is wanted.
+struct DataPixel {
+  Vec3f position{0, 0, 0};                          // world; of the first sample, as the indices are
+  float objectIndex = 0, materialIndex = 0;         // 0 where nothing was hit
+  Vec3f uv{0, 0, 0};                                // sum over the samples of (u, v, 1)
+  std::array<double, 3> emission{}, environment{};  // sums of what is seen of them without a surface between
+
+  static void add(std::array<double, 3>& sum, Rgb v) {
+    if (isFinite(v)) sum = {sum[0] + double(v.x), sum[1] + double(v.y), sum[2] + double(v.z)};
+  }
+};
+
 struct FilmBuffer {
   int width = 0, height = 0;  // of the border; row 0 is the bottom row
   std::vector<Pixel> pixels;
   size_t techniques = 0;               // that the renderer counts
   std::vector<uint32_t> sampleCounts;  // [pixel * techniques + technique]: samples that it took at first hits
+  std::vector<DataPixel> data;         // of each pixel; empty where no pass wants it
   uint32_t samples = 0;                // camera samples that every pixel has
 
   FilmBuffer() = default;

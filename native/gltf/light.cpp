@@ -117,6 +117,17 @@ Camera readCamera(const Json& json, const Json& node, const Affine& toWorld, con
     if (camera.panoramic() ? left == right || bottom == top : !(left < right && bottom < top))
       plane.failExpected("[left, right, bottom, top] with left < right and bottom < top");
     camera.left = left, camera.right = right, camera.bottom = bottom, camera.top = top;
+    if (const auto planes = extension->find("viewPlanes")) {
+      const JsonArray steps = planes->array();
+      if (camera.projection != Projection::kPerspective || steps.size() < 2 || steps.size() > 129)
+        planes->failExpected("2 to 129 view planes, of a perspective camera");
+      for (size_t i = 0; i < steps.size(); i++) {
+        const auto p = steps[i].numbers<4>();
+        if (!(p[0] < p[1] && p[2] < p[3]))
+          steps[i].failExpected("[left, right, bottom, top] with left < right and bottom < top");
+        camera.viewPlanes.push_back(p);
+      }
+    }
     if (const auto clip = extension->find("clip")) {
       const auto [near, far] = clip->numbers<2>();
       setClip(*clip, near, far);

@@ -127,7 +127,8 @@ Mesh Meshes::read(const Json& json) {
     if (primitive.find("targets"))
       leftOut_.add("morph targets of mesh " + json.described(), "the base shape is rendered");
 
-    const int material = materials_.use(primitive), set = materials_.uvSet(material);
+    const int material = materials_.use(primitive), looked = materials_.uvSet(material);
+    const int set = looked < 0 && keepUvs_ && attributes->find("TEXCOORD_0") ? 0 : looked;
     const std::string uvName = set < 0 ? "" : fmt::format("TEXCOORD_{}", set);
     const auto normal = attributes->find("NORMAL"), uv = set < 0 ? std::nullopt : attributes->find(uvName);
     if (set >= 0 && !uv)
@@ -158,7 +159,7 @@ Mesh Meshes::read(const Json& json) {
     if (draco && (hasDraco() || !accessors_.hasData(*position))) {
       DracoPrimitive decoded = readDraco(*draco, uvName, buffers_);
       mended(decoded.mended);
-      MeshPart part{decoded.positions, decoded.normals, turned(decoded.uvs, *position), {}, {}, {}};
+      MeshPart part{decoded.positions, decoded.normals, turned(decoded.uvs, *position), {}, {}, {}, {}, {}};
       Array<uint32_t> indices = triangles(primitive, part.positions, *position, &decoded.indices);
       if (indices.empty()) continue;
       part.primitives.push_back({material, std::move(indices)});
@@ -182,11 +183,33 @@ Mesh Meshes::read(const Json& json) {
       mesh.parts.push_back(std::move(part));
     }
     MeshPart& part = mesh.parts[entry->second];
+    if (const auto own = primitive.extension("WARDMIS_scene"); isNewPart && own)
+      if (const auto motion = own->find("motion")) readMotion(*motion, part);
     Array<uint32_t> indices = triangles(primitive, part.positions, *position, nullptr);
     if (!indices.empty()) part.primitives.push_back({material, std::move(indices)});
   }
   std::erase_if(mesh.parts, [](const MeshPart& part) { return part.primitives.empty(); });
   return mesh;
+}
+
+// Positions, and normals where the part has any, at equal steps of the shutter's time.
+void Meshes::readMotion(const Json& json, MeshPart& part) {
+  const auto read = [&](std::string_view key, std::vector<Array<Vec3f>>& out, size_t expected) {
+    const Json list = json.at(key);
+    const JsonArray steps = list.array();
+    if (steps.size() < 2 || steps.size() > 129 || (expected != 0 && steps.size() != expected))
+      list.failExpected(expected != 0 ? fmt::format("{} accessors, as many as positions", expected)
+                                      : std::string("2 to 129 accessors"));
+    for (size_t i = 0; i < steps.size(); i++) {
+      out.push_back(accessors_.read<Vec3f>(steps[i]));
+      if (out.back().size() != part.positions.size())
+        steps[i].fail(
+            fmt::format("has {} elements, but the primitive {} vertices", out.back().size(), part.positions.size()),
+            kExportAgain);
+    }
+  };
+  read("positions", part.movedPositions, 0);
+  if (!part.normals.empty()) read("normals", part.movedNormals, part.movedPositions.size());
 }
 
 // v = 0 at the bottom, where the file has it at the top.

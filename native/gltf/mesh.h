@@ -23,6 +23,8 @@ class Meshes {
 
   // The index in Scene::meshes of the mesh whose index stands at `use`; read when it is first used. -1: no triangles.
   int use(const Json& use);
+  // From here on also where no material looks anything up by them.
+  void keepUvs() { keepUvs_ = true; }
   void finish(Scene& scene);
 
  private:
@@ -31,6 +33,7 @@ class Meshes {
   Array<uint32_t> triangles(const Json& primitive, const Array<Vec3f>& positions, const Json& position,
                             const Array<uint32_t>* decoded);
   void readProgramVertices(const ProgramVertices& wanted, const Json& attributes, MeshPart& part, size_t& bad);
+  void readMotion(const Json& json, MeshPart& part);
   Array<Vec2f> turned(const Array<Vec2f>& uvs, const Json& place);
   Array<uint32_t> withoutDegenerate(const Json& place, Array<uint32_t> indices, std::span<const Vec3f> positions);
 
@@ -41,6 +44,7 @@ class Meshes {
   LeftOut& leftOut_;
   std::vector<Mesh> read_;
   std::unordered_map<size_t, int> meshOf_;  // by index in the file
+  bool keepUvs_ = false;
   uint64_t triangles_ = 0, degenerate_ = 0;
 };
 

@@ -14,6 +14,7 @@ namespace {
 constexpr const char* kExtension = "WARDMIS_scene";
 constexpr const char* kExportAgain = "export the scene again";
 constexpr int kMostLevels = 64;
+constexpr size_t kMostSteps = 129;  // of a motion, as Embree has it
 constexpr size_t kMostInstances = 50'000'000;
 
 bool isFinite(const Affine& m) {
@@ -29,15 +30,19 @@ Affine affine(Vec3f translation, Quaternion q, Vec3f scale, const Json& place) {
           Vec3f{s * (x * z + w * y), s * (y * z - w * x), 1 - s * (x * x + y * y)} * scale.z, translation};
 }
 
+Affine toAffine(const Json& matrix) {
+  const auto m = matrix.numbers<16>();
+  const float off = std::max({std::fabs(m[3]), std::fabs(m[7]), std::fabs(m[11]), std::fabs(m[15] - 1)});
+  if (off > 1e-5f) matrix.fail("its last row is not 0 0 0 1", kExportAgain);
+  return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
+}
+
 Affine localMatrix(const Json& node) {
   const auto translation = node.find("translation"), rotation = node.find("rotation"), scale = node.find("scale");
   if (const auto matrix = node.find("matrix")) {
     if (translation || rotation || scale)
       node.fail("has both a matrix and translation, rotation or scale", kExportAgain);
-    const auto m = matrix->numbers<16>();
-    const float off = std::max({std::fabs(m[3]), std::fabs(m[7]), std::fabs(m[11]), std::fabs(m[15] - 1)});
-    if (off > 1e-5f) matrix->fail("its last row is not 0 0 0 1", kExportAgain);
-    return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
+    return toAffine(*matrix);
   }
   return affine(translation ? translation->vec3() : Vec3f{0, 0, 0},
                 rotation ? rotation->numbers<4>() : Quaternion{0, 0, 0, 1}, scale ? scale->vec3() : Vec3f{1, 1, 1},
@@ -54,6 +59,7 @@ class NodeForest {
     return false;
   }
   const Affine& world(size_t node);
+  Affine parent(size_t node) { return parent_[node] == kNone ? Affine{} : world(parent_[node]); }
 
  private:
   static constexpr uint32_t kNone = UINT32_MAX;
@@ -112,6 +118,29 @@ const Affine& NodeForest::world(size_t i) {
     known_[i] = true;
   }
   return world_[i];
+}
+
+// World matrices at equal steps of the shutter's time, of a node whose parent stands at `parent`; null where it stands.
+std::shared_ptr<const std::vector<Affine>> motionOf(const Json& node, const Affine& parent) {
+  const auto extension = node.extension(kExtension);
+  const auto json = extension ? extension->find("motion") : std::nullopt;
+  if (!json) return nullptr;
+  const JsonArray steps = json->array();
+  if (steps.size() < 2 || steps.size() > kMostSteps) json->failExpected(fmt::format("2 to {} matrices", kMostSteps));
+  auto motion = std::make_shared<std::vector<Affine>>();
+  for (size_t i = 0; i < steps.size(); i++) {
+    const Affine world = parent * toAffine(steps[i]);
+    const float determinant = std::fabs(world.determinant());
+    if (!isFinite(world) || !(determinant > 1e-37f && determinant < 1e37f))
+      steps[i].fail("the matrix, as placed, is not finite or has no inverse", kExportAgain);
+    motion->push_back(world);
+  }
+  return motion;
+}
+
+bool isHoldout(const Json& node) {
+  const auto extension = node.extension(kExtension);
+  return extension && extension->booleanOr("holdout", false);
 }
 
 uint8_t visibility(const Json& node) {
@@ -244,8 +273,15 @@ void readNodes(const Json& root, Accessors& accessors, Buffers& buffers, Meshes&
       if (mesh < 0)
         leftOut.add("object " + node.described(), "its mesh has no triangles");
       else {
-        Instance instance{node.name(), mesh, forest.world(i), visibility(node), objectData(node)};
+        Instance instance{node.name(),
+                          mesh,
+                          forest.world(i),
+                          visibility(node),
+                          isHoldout(node),
+                          objectData(node),
+                          motionOf(node, forest.parent(i))};
         if (const auto many = node.extension("EXT_mesh_gpu_instancing")) {
+          if (instance.motion) node.fail("has both motion and EXT_mesh_gpu_instancing", kExportAgain);
           const Affine base = instance.toWorld;
           for (const Affine& matrix : instanceMatrices(*many, accessors, buffers, leftOut)) {
             instance.toWorld = base * matrix;
@@ -278,6 +314,9 @@ void readNodes(const Json& root, Accessors& accessors, Buffers& buffers, Meshes&
   const Json node = nodes[*cameraNode];
   const size_t camera = node.at("camera").index(cameras.size(), "cameras");
   scene.camera = readCamera(cameras[camera], node, forest.world(*cameraNode), scene.film);
+  if (const auto motion = motionOf(node, forest.parent(*cameraNode)))
+    for (const Affine& m : *motion)
+      scene.camera->motion.push_back({normalize(m.x), normalize(m.y), normalize(m.z), m.t});
 }
 
 }  // namespace wardmis

@@ -86,6 +86,18 @@ Film readFilm(const Json& json) {
   }
   film.exposure = json.numberOr("exposure", 1, 0);
   film.transparent = json.booleanOr("transparent", false);
+  film.keepUvs = json.booleanOr("keepUvs", false);
+  if (const auto shutter = json.find("shutter")) {
+    film.shutter.rolling = shutter->numberOr("rolling", -1, 0, 1);
+    if (const auto curve = shutter->find("curve")) {
+      const JsonArray values = curve->array();
+      if (values.size() < 2 || values.size() > 4096) curve->failExpected("2 to 4096 numbers");
+      float most = 0;
+      for (size_t i = 0; i < values.size(); i++)
+        most = std::max(most, film.shutter.open.emplace_back(values[i].number(0, 1e6f)));
+      if (!(most > 0)) curve->failExpected("a number above 0");
+    }
+  }
   return film;
 }
 
@@ -140,6 +152,7 @@ Scene read(const Bytes& file, const std::filesystem::path& folder, const std::st
     if (const auto film = own->find("film")) {
       scene.film = readFilm(*film);
       scene.hasFilm = true;
+      if (scene.film.keepUvs) meshes.keepUvs();
     }
     if (const auto world = own->find("world")) {
       if (world->isObject()) {

@@ -56,6 +56,9 @@ struct Dimensions {
   enum : uint32_t { kFilmPoint = 0, kLensPoint, kSampleCounts, kTechnique, kRoulette = kTechnique + K, kPerVertex };
 };
 
+// That of a camera sample's time: beyond those of all vertices.
+inline constexpr uint32_t kTimePoint = 0x80000000u;
+
 // Kinds of bounces, as Cycles limits them.
 enum Bounce : uint8_t { kDiffuseBounce, kGlossyBounce, kTransmissionBounce, kBounceKinds };
 
@@ -192,7 +195,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
                      x.position,
                      sampler.getChoice(plan.pixelKey, dimension + Dimensions<K>::kTechnique + uint32_t{kLight},
                                        indexOf(kLight, m)),
-                     static_cast<int>(plan.vertex)));
+                     static_cast<int>(plan.vertex), x.path.time));
     const Vec3f wi = x.frame.toLocal(light[j].direction);
     batch.set(j, {T(wi.x), T(wi.y), T(wi.z)});
   }
@@ -303,6 +306,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       shadow.direction = l.direction;
       shadow.kind = kCastsShadow;
       if constexpr (kGeneral) shadow.path = x.path.shadow();
+      shadow.path.time = x.path.time;
       if (l.distance < 1e30f) {
         // up to just before the emitter: from the moved origin to the same point, by way of differences, since the
         // point itself would be rounded to a place beside or behind the emitter far from the origin
@@ -365,7 +369,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     const Shape& shape = world.geometry.shapes[hit.shape];
     const Material& m = world.scene.materials[static_cast<size_t>(shape.material)];
     if (!isBlack(m.emission.value)) {
-      p[kLight] = world.emitters.trianglePdf(world.geometry.placements[hit.placement], hit, d);
+      p[kLight] = world.emitters.trianglePdf(world.geometry.placements[hit.placement], hit, d, ray.path.time);
       Rgb radiance = interact<N, K>(world.scene, world.geometry, ray, hit).emission;
       if constexpr (kGeneral) radiance *= seenThrough;
       add(t, sharp, f, radiance, p, world.geometry.placements[hit.placement].visibility, set);

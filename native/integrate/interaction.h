@@ -55,11 +55,11 @@ inline Vec2f interpolate(const Array<Vec2f>& a, const uint32_t* i, float u, floa
 
 // World direction of the anisotropy before its rotation: of increasing u; without UVs, along the meridians of the
 // object's z axis.
-inline Vec3f tangent(const Placement& p, const Shape& s, const uint32_t* i, Vec3f position) {
+inline Vec3f tangent(const Placement& p, const Shape& s, const uint32_t* i, const Corners& corner, Vec3f position) {
   if (!s.part->uvs.empty()) {
     const Vec2f a = s.part->uvs[i[0]], b = s.part->uvs[i[1]], c = s.part->uvs[i[2]];
     const float du1 = b.x - a.x, dv1 = b.y - a.y, du2 = c.x - a.x, dv2 = c.y - a.y;
-    const Vec3f e1 = s.positions[i[1]] - s.positions[i[0]], e2 = s.positions[i[2]] - s.positions[i[0]];
+    const Vec3f e1 = corner[1] - corner[0], e2 = corner[2] - corner[0];
     const Vec3f t = (e1 * dv2 - e2 * dv1) * std::copysign(1.0f, du1 * dv2 - du2 * dv1);
     return p.flat ? t : p.toWorld.vector(t);
   }
@@ -71,19 +71,26 @@ inline Vec3f tangent(const Placement& p, const Shape& s, const uint32_t* i, Vec3
 // unit normal is n: a few roundings of the coordinates that the normal sees. Neither a constant, which is beyond the
 // far side of a scene of 1e-6 and nothing at 1e6, nor relative to the point, which may lie near the origin on a
 // triangle that reaches far. Zero where nothing rounds, as on a floor at z = 0.
-inline float clearance(const Placement& p, const Shape& s, const uint32_t* i, Vec3f n) {
+inline float clearance(const Placement& p, const Corners& corner, Vec3f n) {
   constexpr float kRoundings = 0x1p-19f;
   const auto reach = [](Vec3f a, Vec3f b, Vec3f c) {
     const auto most = [](float x, float y, float z) { return std::max({std::abs(x), std::abs(y), std::abs(z)}); };
     return Vec3f{most(a.x, b.x, c.x), most(a.y, b.y, c.y), most(a.z, b.z, c.z)};
   };
   const auto absolute = [](Vec3f v) { return Vec3f{std::abs(v.x), std::abs(v.y), std::abs(v.z)}; };
-  Vec3f r = reach(s.positions[i[0]], s.positions[i[1]], s.positions[i[2]]);
+  Vec3f r = reach(corner[0], corner[1], corner[2]);
   if (!p.flat) {
     const Affine& m = p.toWorld;
     r = absolute(m.x) * r.x + absolute(m.y) * r.y + absolute(m.z) * r.z + absolute(m.t);
   }
   return kRoundings * dot(absolute(n), r);
+}
+
+// Of a shape that deforms, where the mesh's own are.
+inline Vec3f movedNormal(const Shape& s, const uint32_t* i, float u, float v, float time) {
+  const auto& steps = s.part->movedNormals;
+  const auto [first, t] = stepAt(steps.size(), time);
+  return interpolate(steps[first], i, u, v) * (1 - t) + interpolate(steps[first + 1], i, u, v) * t;
 }
 
 // A shading normal that looks away from the viewer is bent until it does not (else the silhouette turns black). One
@@ -105,11 +112,12 @@ Framef resolveLobes(const Scene& scene, const Material& material, const ShadedPo
 
 }  // namespace detail
 
-// ray: the one that hit. N: needs mask of the kernel.
-template <uint32_t N, size_t K = 3>
-InteractionOf<SurfaceOf<N, K>> interact(const Scene& scene, const Geometry& geometry, const Ray& ray, const Hit& hit) {
-  const Placement& placement = geometry.placements[hit.placement];
-  const Shape& shape = geometry.shapes[hit.shape];
+namespace detail {
+
+// placement: of the hit, where it is at the ray's time.
+template <uint32_t N, size_t K>
+InteractionOf<SurfaceOf<N, K>> interactWith(const Scene& scene, const Placement& placement, const Shape& shape,
+                                            const Ray& ray, const Hit& hit) {
   const Material& m = scene.materials[static_cast<size_t>(shape.material)];
   const uint32_t* i = shape.indices + 3 * size_t{hit.triangle};
 
@@ -118,33 +126,37 @@ InteractionOf<SurfaceOf<N, K>> interact(const Scene& scene, const Geometry& geom
   x.placement = hit.placement;
   x.wo = -ray.direction;
   // from one corner: far from the origin, weights that do not quite sum to 1 would move the point
-  const Vec3f a = shape.positions[i[0]];
-  const Vec3f p = a + ((shape.positions[i[1]] - a) * hit.u + (shape.positions[i[2]] - a) * hit.v);
+  const Corners corner = cornersOf(shape, hit.triangle, ray.path.time);
+  const Vec3f a = corner[0];
+  const Vec3f p = a + ((corner[1] - a) * hit.u + (corner[2] - a) * hit.v);
   x.position = placement.flat ? p : placement.toWorld.point(p);
   Vec3f ng = placement.flat ? hit.normal : placement.toWorld.normal(hit.normal);
   ng = normalize(ng);
   Vec3f ns = ng;
   if (!shape.part->normals.empty()) {
     // normals stay in the mesh's space, also where positions were moved
-    const Vec3f n = placement.toWorld.normal(detail::interpolate(shape.part->normals, i, hit.u, hit.v));
+    Vec3f own = interpolate(shape.part->normals, i, hit.u, hit.v);
+    if (!shape.part->movedNormals.empty()) [[unlikely]]
+      own = movedNormal(shape, i, hit.u, hit.v, ray.path.time);
+    const Vec3f n = placement.toWorld.normal(own);
     const float l2 = dot(n, n);
     if (l2 > 0) ns = n / std::sqrt(l2);
   }
   const bool turned = dot(ng, x.wo) < 0;
   if (turned) ng = -ng, ns = -ns;
   x.geometric = ng;
-  x.clearance = detail::clearance(placement, shape, i, ng);
-  if (!shape.part->normals.empty()) ns = detail::bent(ns, ng, x.wo);
+  x.clearance = clearance(placement, corner, ng);
+  if (!shape.part->normals.empty()) ns = bent(ns, ng, x.wo);
   x.path = ray.path;
   x.rayLength = hit.t;
 
   // UVs are in the file only where a texture is looked up (the reader leaves the others out).
-  const Vec2f uv = shape.part->uvs.empty() ? Vec2f{} : detail::interpolate(shape.part->uvs, i, hit.u, hit.v);
+  const Vec2f uv = shape.part->uvs.empty() ? Vec2f{} : interpolate(shape.part->uvs, i, hit.u, hit.v);
   const ShadedPoint point{placement, shape, hit.triangle, hit.u,  hit.v,  x.position,
                           ng,        ns,    x.wo,         turned, x.path, hit.t};
   if constexpr ((N & kNeedsLobes) != 0) {
-    x.frame = detail::resolveLobes<K>(scene, m, point, uv, detail::tangent(placement, shape, i, x.position), x.surface,
-                                      x.emission);
+    x.frame =
+        resolveLobes<K>(scene, m, point, uv, tangent(placement, shape, i, corner, x.position), x.surface, x.emission);
     return x;
   } else {
     const auto color = [&](const ColorInput& c) { return c.texture.texture >= 0 ? evaluate(scene, c, uv) : c.value; };
@@ -152,7 +164,7 @@ InteractionOf<SurfaceOf<N, K>> interact(const Scene& scene, const Geometry& geom
       return c.texture.texture >= 0 ? evaluateAlpha(scene, c, uv) : c.value;
     };
     if (m.program) [[unlikely]] {
-      detail::resolve(scene, m, point, uv, x.surface, x.emission, ns);
+      resolve(scene, m, point, uv, x.surface, x.emission, ns);
     } else {
       if constexpr ((N & kNeedsDiffuse) != 0) x.surface.diffuse = color(m.diffuse);
       if constexpr ((N & kNeedsSpecular) != 0) {
@@ -165,7 +177,7 @@ InteractionOf<SurfaceOf<N, K>> interact(const Scene& scene, const Geometry& geom
     if constexpr ((N & kNeedsSpecular) != 0) x.surface.variant = m.variant;
 
     if ((N & kNeedsSpecular) != 0 && x.surface.ax != x.surface.ay) {
-      const Framef f = Framef::around(ns, detail::tangent(placement, shape, i, x.position));
+      const Framef f = Framef::around(ns, tangent(placement, shape, i, corner, x.position));
       const float c = std::cos(m.rotation), s = std::sin(m.rotation);
       x.frame = {f.x * c + f.y * s, f.y * c - f.x * s, ns};
     } else {
@@ -173,6 +185,21 @@ InteractionOf<SurfaceOf<N, K>> interact(const Scene& scene, const Geometry& geom
     }
     return x;
   }
+}
+
+}  // namespace detail
+
+// ray: the one that hit. N: needs mask of the kernel.
+template <uint32_t N, size_t K = 3>
+InteractionOf<SurfaceOf<N, K>> interact(const Scene& scene, const Geometry& geometry, const Ray& ray, const Hit& hit) {
+  const Placement& placement = geometry.placements[hit.placement];
+  const Shape& shape = geometry.shapes[hit.shape];
+  if (placement.motion != nullptr) [[unlikely]] {
+    auto x = detail::interactWith<N, K>(scene, placement.at(ray.path.time), shape, ray, hit);
+    x.clearance *= 4;  // the transform has been interpolated twice, here and in Embree
+    return x;
+  }
+  return detail::interactWith<N, K>(scene, placement, shape, ray, hit);
 }
 
 }  // namespace wardmis

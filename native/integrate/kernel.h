@@ -24,11 +24,12 @@ struct KernelInput {
   SampleCost<K> cost;                   // for `auto`
   int samplesPerHit;
   PathLimits limits;
-  bool lights;       // the light technique has something to aim at
-  bool surfaceRays;  // rays of the surface's techniques can find light
-  float least;       // that a sample may be: 0, unless a light is negative
-  int x0, y0;        // of the border in the full frame
-  int side = 1;      // of a pixel of the film, in pixels of the image; more for a coarse pilot
+  bool lights;             // the light technique has something to aim at
+  bool surfaceRays;        // rays of the surface's techniques can find light
+  const Shutter* shutter;  // null: nothing moves
+  float least;             // that a sample may be: 0, unless a light is negative
+  int x0, y0;              // of the border in the full frame
+  int side = 1;            // of a pixel of the film, in pixels of the image; more for a coarse pilot
 };
 
 struct Tile {

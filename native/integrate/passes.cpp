@@ -51,7 +51,44 @@ const std::vector<PassSource>& sources() {
   return all;
 }
 
+Value meanOf(const FilmBuffer& f, const std::array<double, 3>& sum) {
+  const double s = f.samples > 0 ? 1.0 / f.samples : 0;
+  return {static_cast<float>(sum[0] * s), static_cast<float>(sum[1] * s), static_cast<float>(sum[2] * s), 0};
+}
+
+const std::vector<PassSource>& dataSources() {
+  static const std::vector<PassSource> all = {
+      {{"Position", "XYZ", "position", true},
+       [](const FilmBuffer& f, size_t i) -> Value {
+         const Vec3f p = f.data[i].position;
+         return {p.x, p.y, p.z, 0};
+       }},
+      {{"UV", "UVA", "uv", true},
+       [](const FilmBuffer& f, size_t i) -> Value {
+         const Vec3f uv = f.data[i].uv;
+         return meanOf(f, {double(uv.x), double(uv.y), double(uv.z)});
+       }},
+      {{"Object Index", "X", "object-index", true},
+       [](const FilmBuffer& f, size_t i) -> Value {
+         return {f.data[i].objectIndex, 0, 0, 0};
+       }},
+      {{"Material Index", "X", "material-index", true},
+       [](const FilmBuffer& f, size_t i) -> Value {
+         return {f.data[i].materialIndex, 0, 0, 0};
+       }},
+      {{"Emission", "RGB", "emission", true},
+       [](const FilmBuffer& f, size_t i) -> Value { return meanOf(f, f.data[i].emission); }},
+      {{"Environment", "RGB", "environment", true},
+       [](const FilmBuffer& f, size_t i) -> Value { return meanOf(f, f.data[i].environment); }},
+  };
+  return all;
+}
+
 PassSource sourceOf(const PassInfo& pass, const std::vector<std::string>& names) {
+  if (pass.data)
+    return {pass, std::find_if(dataSources().begin(), dataSources().end(), [&](const PassSource& s) {
+                    return s.info.group == pass.group;
+                  })->get};
   for (size_t t = 0; t < names.size(); ++t)
     if (pass.name == allocationPass(names[t]))
       return {pass, [t](const FilmBuffer& f, size_t i) -> Value {
@@ -76,6 +113,7 @@ std::vector<PassInfo> passesFor(TechniqueMask techniques, const std::vector<std:
   for (const PassSource& s : sources()) result.push_back(s.info);
   for (size_t t = 0; t < names.size(); ++t)
     if (has(techniques, t)) result.push_back({allocationPass(names[t]), "X", "allocation"});
+  for (const PassSource& s : dataSources()) result.push_back(s.info);
   return result;
 }
 
@@ -91,7 +129,7 @@ ExrImage toPasses(const FilmBuffer& film, const std::vector<PassInfo>& passes,
     for (size_t i = 0; i < count; ++i) {
       const size_t row = i / width, flipped = (static_cast<size_t>(film.height) - 1 - row) * width + i % width;
       Value v = source.get(film, i);
-      if (zUp && pass.group == "normal") v = {v[0], -v[2], v[1], 0};
+      if (zUp && (pass.group == "normal" || pass.group == "position")) v = {v[0], -v[2], v[1], 0};
       for (size_t c = 0; c < pass.channels.size(); ++c) image.channels[first + c].values[flipped] = v[c];
     }
   }

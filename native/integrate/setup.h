@@ -50,6 +50,7 @@ struct RenderSetup {
  private:
   RenderScene world_;
   CameraRays camera_;
+  Shutter shutter_;
   PixelFilter filter_;
   Sampler sampler_;
   CandidateLists<K> candidates_;

@@ -10,14 +10,31 @@
 
 namespace wardmis {
 
-// Radiance along one camera ray. taken: the pixel's samples of each technique so far.
+// What the camera meets first, of one sample.
+template <class X>
+[[gnu::noinline]] void note(DataPixel& data, const RenderScene& world, const Hit& hit, const X& x, bool first) {
+  const Placement& placement = world.geometry.placements[hit.placement];
+  const Shape& shape = world.geometry.shapes[hit.shape];
+  Vec2f uv{0, 0};
+  if (!shape.part->uvs.empty())
+    uv = detail::interpolate(shape.part->uvs, shape.indices + 3 * size_t{hit.triangle}, hit.u, hit.v);
+  data.uv += Vec3f{uv.x, uv.y, 1};
+  if (!first) return;
+  data.position = x.position;
+  data.objectIndex = placement.object != nullptr ? placement.object->index : 0;
+  data.materialIndex = world.scene.materials[static_cast<size_t>(x.material)].index;
+}
+
+// Radiance along one camera ray. data: null where it is not wanted. taken: the pixel's samples of each technique so
+// far.
 template <uint32_t N, size_t K>
 Rgb cameraSample(const KernelInput<K>& in, const Ray& camera, uint32_t pixelKey, uint32_t sample,
-                 const PixelFractions<K>* allocated, Pixel& pixel, uint32_t* taken, PilotPixel* pilot,
+                 const PixelFractions<K>* allocated, Pixel& pixel, DataPixel* data, uint32_t* taken, PilotPixel* pilot,
                  HitMoments<K>* moments, CandidateSums<K>* candidates, Counts& counts) {
   const RenderScene& world = in.scene;
   ++counts.cameraRays;
   const bool transparent = world.scene.film.transparent;
+  const float exposure = world.scene.film.exposure;
   Rgb sum{0, 0, 0}, seenThrough{1, 1, 1};
   bool covered = !transparent;
   Ray ray = camera;
@@ -25,14 +42,25 @@ Rgb cameraSample(const KernelInput<K>& in, const Ray& camera, uint32_t pixelKey,
     world.emitters.along(ray, std::min(tMax, ray.tMax), escaped && !transparent, 0, [&](const EmitterHit& e) {
       sum += e.radiance * seenThrough;
       covered = true;
+      if (data != nullptr) [[unlikely]]
+        DataPixel::add(e.sky ? data->environment : data->emission, e.radiance * seenThrough * exposure);
     });
   });
+  if (data != nullptr && transparent && !hit.valid()) [[unlikely]]  // a hole for the picture, and there for its pass
+    world.emitters.along(ray, ray.tMin, true, 0, [&](const EmitterHit& e) {
+      if (e.sky) DataPixel::add(data->environment, e.radiance * seenThrough * exposure);
+    });
+  if (hit.valid() && world.geometry.placements[hit.placement].holdout) return sum;
   pixel.alpha += covered || hit.valid() ? 1.0f : 0.0f;
   if (!hit.valid()) return sum;
 
   const auto x = interact<N, K>(world.scene, world.geometry, ray, hit);
   const auto& s = x.surface;
   sum += x.emission * seenThrough;
+  if (data != nullptr) [[unlikely]] {
+    DataPixel::add(data->emission, x.emission * seenThrough * exposure);
+    note(*data, world, hit, x, sample == 0);
+  }
   if (sample == 0) pixel.depth = in.camera.depth(ray, hit.t);
   pixel.normal += x.frame.z;
   pixel.albedo += s.albedo();
@@ -94,7 +122,7 @@ Rgb cameraSample(const KernelInput<K>& in, const Ray& camera, uint32_t pixelKey,
 
 template <uint32_t N, size_t K>
 void renderTile(const KernelInput<K>& in, const Tile& tile, FilmBuffer& film, Pilot<K>* pilot, Counts& counts) {
-  const float exposure = in.scene.scene.film.exposure;
+  const float exposure = in.scene.scene.film.exposure, height = static_cast<float>(in.scene.scene.film.height);
   for (int y = tile.y0; y < tile.y1; ++y)
     for (int x = tile.x0; x < tile.x1; ++x) {
       const int px = x * in.side + in.x0, py = y * in.side + in.y0;
@@ -106,18 +134,22 @@ void renderTile(const KernelInput<K>& in, const Tile& tile, FilmBuffer& film, Pi
       CandidateSums<K>* candidates =
           pilot != nullptr && !pilot->candidates.empty() ? &pilot->candidates[index] : nullptr;
       HitMoments<K>* moments = pilot != nullptr && !pilot->moments.empty() ? &pilot->moments[index] : nullptr;
+      DataPixel* data = film.data.empty() ? nullptr : &film.data[index];
       PilotPixel* pilotPixel = pilot != nullptr ? &pilot->pixels[index] : nullptr;
       for (uint32_t s = tile.firstSample; s < tile.firstSample + tile.samples; ++s) {
         const Vec2f offset = in.filter.sample(in.sampler.get2D(key, Dimensions<K>::kFilmPoint, s));
         const Vec2f lens = in.camera.needsLens() ? in.sampler.get2D(key, Dimensions<K>::kLensPoint, s) : Vec2f{};
+        float time = kMiddle;
+        if (in.shutter != nullptr) [[unlikely]]
+          time = in.shutter->at(in.sampler.get1D(key, kTimePoint, s), static_cast<float>(py) / height);
         const Ray ray = in.camera.ray(static_cast<float>(px) + side * (0.5f + offset.x),
-                                      static_cast<float>(py) + side * (0.5f + offset.y), lens);
+                                      static_cast<float>(py) + side * (0.5f + offset.y), lens, time);
         if (!(ray.tMax > 0)) [[unlikely]] {
           pixel.alpha += 1;  // black, and no hole in the picture, as Cycles has it
           pixel.add({0, 0, 0});
           continue;
         }
-        const Rgb value = cameraSample<N, K>(in, ray, key, s, allocated, pixel, &film.sampleCounts[index * K],
+        const Rgb value = cameraSample<N, K>(in, ray, key, s, allocated, pixel, data, &film.sampleCounts[index * K],
                                              pilotPixel, moments, candidates, counts) *
                           exposure;
         if (counts.rare.admit(value, in.least)) pixel.add(value);

@@ -27,7 +27,8 @@ enum RayKind : uint16_t {
 struct PathState {
   uint16_t kinds = kCameraRay;  // of the current ray
   uint8_t depth = 0, diffuse = 0, glossy = 0, transparent = 0, transmission = 0;
-  float before = 0;  // length of the path before the current ray
+  float before = 0;   // length of the path before the current ray
+  float time = 0.5f;  // of all of it: where in the shutter's opening, 0 to 1
 
   // After a ray of length t, going on by one of these kinds.
   PathState scattered(uint16_t by, float t) const {

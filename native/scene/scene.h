@@ -3,6 +3,7 @@
 // World space is the file's (glTF: Y up). Radiometric units; colours linear Rec. 709.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -85,6 +86,8 @@ struct MeshPart {
   Array<Vec2f> uvs;                         // v = 0 at the bottom
   std::vector<VertexAttribute> attributes;  // in the order of the program's; those of all its materials are the same
   Array<Vec3f> generated;                   // Generated coordinates
+  // Where it deforms: at equal steps of the shutter's time, the frame's own among them. Normals where it has any.
+  std::vector<Array<Vec3f>> movedPositions, movedNormals;
   std::vector<Primitive> primitives;
 };
 struct Mesh {
@@ -120,7 +123,9 @@ struct Instance {
   int mesh = 0;
   Affine toWorld;
   uint8_t visibility = kSeenByAll;
-  std::shared_ptr<const ObjectData> object;  // null: as it is by default
+  bool holdout = false;                               // the camera sees a hole there
+  std::shared_ptr<const ObjectData> object;           // null: as it is by default
+  std::shared_ptr<const std::vector<Affine>> motion;  // toWorld at equal steps of the shutter's time; null: it stands
 };
 
 enum class LightType : uint8_t { kArea, kPoint, kSpot, kSun };
@@ -170,9 +175,17 @@ struct Camera {
   float lensRadius = 0, focusDistance = 1;
   int blades = 0;  // < 3: round
   float bladeRotation = 0, bladeRatio = 1;
+  std::vector<Affine> motion;                    // toWorld at equal steps of the shutter's time; empty: it stands
+  std::vector<std::array<float, 4>> viewPlanes;  // left, right, bottom, top likewise
 
   bool orthographic() const { return projection == Projection::kOrthographic; }
   bool panoramic() const { return projection > Projection::kOrthographic; }
+};
+
+// Where anything moves.
+struct ShutterCurve {
+  std::vector<float> open;  // how far, at equal steps of the time; empty: always alike
+  float rolling = -1;       // see world/motion.h
 };
 
 struct Film {
@@ -182,6 +195,8 @@ struct Film {
   float filterWidth = 1.5f;
   float exposure = 1;
   bool transparent = false;
+  bool keepUvs = false;  // for the pass, also where nothing is looked up by them
+  ShutterCurve shutter;
 };
 
 // How an image holds the directions of a sky: docs/scene-format.md.

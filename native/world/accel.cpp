@@ -46,7 +46,26 @@ void setRay(RTCRay& out, const Ray& r) {
   out.org_x = r.origin.x, out.org_y = r.origin.y, out.org_z = r.origin.z;
   out.dir_x = r.direction.x, out.dir_y = r.direction.y, out.dir_z = r.direction.z;
   out.tnear = r.tMin, out.tfar = r.tMax;
-  out.time = 0, out.mask = ~0u, out.id = 0, out.flags = r.kind;
+  out.time = r.path.time, out.mask = ~0u, out.id = 0, out.flags = r.kind;
+}
+
+void setTransform(RTCGeometry g, const Placement& placement) {
+  if (placement.motion == nullptr) {
+    rtcSetGeometryTransform(g, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, &placement.toWorld);
+    return;
+  }
+  const std::span<const Decomposed> steps = placement.motion->steps();
+  rtcSetGeometryTimeStepCount(g, static_cast<unsigned>(steps.size()));
+  for (size_t i = 0; i < steps.size(); ++i) {
+    const Decomposed& d = steps[i];
+    RTCQuaternionDecomposition q;
+    rtcInitQuaternionDecomposition(&q);
+    rtcQuaternionDecompositionSetQuaternion(&q, d.quaternion[3], d.quaternion[0], d.quaternion[1], d.quaternion[2]);
+    rtcQuaternionDecompositionSetScale(&q, d.xx, d.yy, d.zz);
+    rtcQuaternionDecompositionSetSkew(&q, d.xy, d.xz, d.yz);
+    rtcQuaternionDecompositionSetTranslation(&q, d.translation.x, d.translation.y, d.translation.z);
+    rtcSetGeometryTransformQuaternion(g, static_cast<unsigned>(i), &q);
+  }
 }
 
 }  // namespace
@@ -85,8 +104,11 @@ struct Accel::Impl {
 
   RTCGeometry triangles(const Shape& s) {
     RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, s.positions, 0, sizeof(Vec3f),
-                               s.vertices);
+    const size_t steps = s.motion != nullptr ? s.motion->size() : 1;
+    rtcSetGeometryTimeStepCount(g, static_cast<unsigned>(steps));
+    for (size_t i = 0; i < steps; ++i)
+      rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, static_cast<unsigned>(i), RTC_FORMAT_FLOAT3,
+                                 s.motion != nullptr ? (*s.motion)[i] : s.positions, 0, sizeof(Vec3f), s.vertices);
     rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, s.indices, 0, 3 * sizeof(uint32_t),
                                s.triangles);
     return g;
@@ -166,7 +188,7 @@ Accel::Accel(const Geometry& geometry, int threads) : impl_(std::make_unique<Imp
     }
     RTCGeometry g = rtcNewGeometry(a.device, RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(g, sharedScene);
-    rtcSetGeometryTransform(g, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, &placement.toWorld);
+    setTransform(g, placement);
     rtcCommitGeometry(g);
     rtcAttachGeometryByID(a.scene, g, static_cast<unsigned>(a.tops.size()));
     rtcReleaseGeometry(g);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <optional>
 
 #include "math/number.h"
 #include "math/warp.h"
@@ -16,18 +17,49 @@ class CameraRays {
   CameraRays(const Camera& camera, const Film& film) : camera_(camera), film_(film) {
     const Vec3f n = cross(camera.toWorld.x, camera.toWorld.y);
     toDepth_ = n / -dot(n, camera.toWorld.z);
+    if (!camera.motion.empty()) motion_.emplace(camera.motion);
   }
+
+  bool moves() const { return motion_ || !camera_.viewPlanes.empty(); }
 
   bool needsLens() const { return camera_.lensRadius > 0; }
 
   // (px, py): film position in pixels of the full frame from its bottom left; u: lens. Without length (tMax 0) where a
   // panorama sees nothing.
-  Ray ray(float px, float py, Vec2f u) const {
+  Ray ray(float px, float py, Vec2f u, float time = kMiddle) const {
     const Camera& c = camera_;
-    const float x = c.left + px / static_cast<float>(film_.width) * (c.right - c.left);
-    const float y = c.bottom + py / static_cast<float>(film_.height) * (c.top - c.bottom);
+    const float fx = px / static_cast<float>(film_.width), fy = py / static_cast<float>(film_.height);
+    Ray r;
+    if (motion_) [[unlikely]]
+      r = through(motion_->at(time), fx, fy, u, time);
+    else
+      r = through(c.toWorld, fx, fy, u, time);
+    r.path.time = time;
+    return r;
+  }
+  // Planar depth of a point at distance t along a ray of this camera; of a panorama its distance.
+  float depth(const Ray& r, float t) const {
+    if (camera_.panoramic()) return length(r.origin + r.direction * t - camera_.toWorld.t);
+    if (motion_) [[unlikely]]  // from where the frame's own camera is
+      return dot(r.origin + r.direction * t - camera_.toWorld.t, toDepth_);
+    return dot(r.direction, toDepth_) * t;
+  }
+
+ private:
+  // fx, fy: of the full frame, 0 to 1.
+  Ray through(const Affine& toWorld, float fx, float fy, Vec2f u, float time) const {
+    const Camera& c = camera_;
+    float x = c.left + fx * (c.right - c.left);
+    float y = c.bottom + fy * (c.top - c.bottom);
+    if (!c.viewPlanes.empty()) [[unlikely]] {
+      const auto [first, t] = stepAt(c.viewPlanes.size(), time);
+      const auto &a = c.viewPlanes[first], &b = c.viewPlanes[first + 1];
+      const auto side = [&, t = t](size_t k) { return a[k] * (1 - t) + b[k] * t; };
+      x = side(0) + fx * (side(1) - side(0));
+      y = side(2) + fy * (side(3) - side(2));
+    }
     if (c.panoramic()) [[unlikely]]
-      return panorama(x, y, u);
+      return panorama(toWorld, x, y, u);
     Vec3f origin{0, 0, 0}, direction{x, y, -1};
     if (c.orthographic()) origin = {x, y, 0}, direction = {0, 0, -1};
     if (c.lensRadius > 0) {
@@ -39,23 +71,16 @@ class CameraRays {
     // clip distances are planar depths: along the ray they stretch by |direction| / depth
     const float stretch = length(direction) / -direction.z;
     Ray r;
-    r.origin = c.toWorld.point(origin);
-    r.direction = normalize(c.toWorld.vector(direction));
+    r.origin = toWorld.point(origin);
+    r.direction = normalize(toWorld.vector(direction));
     r.tMin = c.clipNear * stretch;
     r.tMax = c.clipFar * stretch;
     r.kind = kSeenByCamera;
     return r;
   }
-  // Planar depth of a point at distance t along a ray of this camera; of a panorama its distance.
-  float depth(const Ray& r, float t) const {
-    if (camera_.panoramic()) return length(r.origin + r.direction * t - camera_.toWorld.t);
-    return dot(r.direction, toDepth_) * t;
-  }
-
- private:
   // The lens stands across the view, whichever way that goes; it turns about the axis towards which its x would point,
   // as in Cycles.
-  Ray panorama(float x, float y, Vec2f u) const {
+  Ray panorama(const Affine& toWorld, float x, float y, Vec2f u) const {
     const Camera& c = camera_;
     Vec3f origin{0, 0, 0}, direction = panoramaDirection(c, x, y);
     Ray r;
@@ -73,8 +98,8 @@ class CameraRays {
       origin = lensX * lens.x + lensY * lens.y;
       direction = direction * c.focusDistance - origin;
     }
-    r.origin = c.toWorld.point(origin);
-    r.direction = normalize(c.toWorld.vector(direction));
+    r.origin = toWorld.point(origin);
+    r.direction = normalize(toWorld.vector(direction));
     r.tMin = c.clipNear;
     r.tMax = c.clipFar;
     r.kind = kSeenByCamera;
@@ -94,6 +119,7 @@ class CameraRays {
   }
   const Camera& camera_;
   const Film& film_;
+  std::optional<MovingFrame> motion_;
   Vec3f toDepth_;  // minus the z of a vector in the camera's axes
 };
 

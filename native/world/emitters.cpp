@@ -243,8 +243,7 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Env
       for (uint32_t t = static_cast<uint32_t>(strength.size()); t < shape.triangles; ++t)
         strength.push_back(static_cast<float>(luminances.of(placement, shape, t)));
       for (uint32_t t = 0; t < shape.triangles; ++t) {
-        const Vec3f a = geometry.corner(placement, shape, t, 0), b = geometry.corner(placement, shape, t, 1),
-                    c = geometry.corner(placement, shape, t, 2);
+        const auto [a, b, c] = Geometry::corners(placement, shape, t);
         const double w = 2 * kPif * 0.5 * length(cross(b - a, c - a)) * double(strength[t]);
         emissive_.push_back({p, s, t});
         power.push_back(std::isfinite(w) && w > 0 ? w : 0.0);
@@ -337,7 +336,7 @@ float Emitters::pdfRectangle(const Lamp& lamp, Vec3f from, float t, float cosLig
   return q.solidAngle > 1e-4f ? 1 / q.solidAngle : 0;
 }
 
-LightSample Emitters::sample(Vec3f from, ChoicePoint point, int bounces) const {
+LightSample Emitters::sample(Vec3f from, ChoicePoint point, int bounces, float time) const {
   LightSample s;
   const uint32_t index = table_.sample(point.x);
   const Vec2f u{toCoordinate(point.x), point.y};
@@ -346,8 +345,8 @@ LightSample Emitters::sample(Vec3f from, ChoicePoint point, int bounces) const {
     const Triangle& e = emissive_[index - lamps_.size()];
     const Placement& p = geometry_.placements[e.placement];
     const Shape& shape = geometry_.shapes[e.shape];
-    const Vec3f a = geometry_.corner(p, shape, e.triangle, 0), ab = geometry_.corner(p, shape, e.triangle, 1) - a,
-                ac = geometry_.corner(p, shape, e.triangle, 2) - a;
+    const Corners corner = Geometry::corners(p, shape, e.triangle, time);
+    const Vec3f a = corner[0], ab = corner[1] - a, ac = corner[2] - a;
     const Vec2f b = toTriangle(u);
     const Vec3f to = (a - from) + ab * b.x + ac * b.y;
     const Vec3f n = cross(ab, ac);  // twice the area
@@ -361,7 +360,7 @@ LightSample Emitters::sample(Vec3f from, ChoicePoint point, int bounces) const {
     const ColorInput& emission = scene_.materials[static_cast<size_t>(shape.material)].emission;
     s.radiance = emission.value;
     if (emission.result >= 0) {
-      s.radiance = emissionAt(scene_, p, shape, e.triangle, b.x, b.y, from, bounces);
+      s.radiance = emissionAt(scene_, p, shape, e.triangle, b.x, b.y, from, bounces, time);
     } else if (emission.texture.texture >= 0 && !shape.part->uvs.empty()) {
       const uint32_t* i = shape.indices + 3 * size_t{e.triangle};
       const Vec2f t0 = shape.part->uvs[i[0]], t1 = shape.part->uvs[i[1]], t2uv = shape.part->uvs[i[2]];
@@ -547,13 +546,13 @@ bool Emitters::meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax,
   }
   hit.pdf = pdf > 0 ? pdf * probability(index) : 0;
   hit.visibility = lamp.visibility;
+  hit.sky = lamp.kind == Kind::kEnvironment;
   return true;
 }
 
-float Emitters::trianglePdf(const Placement& p, const Hit& hit, Vec3f direction) const {
+float Emitters::trianglePdf(const Placement& p, const Hit& hit, Vec3f direction, float time) const {
   const Shape& shape = geometry_.shapes[hit.shape];
-  const Vec3f a = geometry_.corner(p, shape, hit.triangle, 0), b = geometry_.corner(p, shape, hit.triangle, 1),
-              c = geometry_.corner(p, shape, hit.triangle, 2);
+  const auto [a, b, c] = Geometry::corners(p, shape, hit.triangle, time);
   const float cosArea = std::abs(dot(direction, cross(b - a, c - a))) * 0.5f;
   if (!(cosArea > 0)) return 0;
   return probability(lamps_.size() + p.firstEmitter + shape.emitterOffset + hit.triangle) * hit.t * hit.t / cosArea;

@@ -29,6 +29,7 @@ struct EmitterHit {
   Rgb radiance{0, 0, 0};
   float pdf = 0;  // density of the light technique at this direction, for this emitter; 0 where it does not sample it
   uint8_t visibility = kSeenByAll;
+  bool sky = false;  // a world's, else a light's
 };
 
 class Emitters {
@@ -45,8 +46,8 @@ class Emitters {
   bool anySky() const { return sky_; }
   uint64_t emissiveTriangles() const { return triangles_; }
 
-  // bounces: by which the path has come to `from`.
-  LightSample sample(Vec3f from, ChoicePoint u, int bounces = 0) const;
+  // bounces: by which the path has come to `from`; time: of the path.
+  LightSample sample(Vec3f from, ChoicePoint u, int bounces = 0, float time = kMiddle) const;
 
   // Calls f(EmitterHit) for each light object that the ray meets before tMax, and, where the ray goes on for ever
   // (escaped), for the environment and suns. bounces: by which the path has come to the ray's origin; 0 from the
@@ -55,7 +56,7 @@ class Emitters {
   void along(const Ray& ray, float tMax, bool escaped, int bounces, F&& f) const;
 
   // The emissive triangle that was hit.
-  float trianglePdf(const Placement& p, const Hit& hit, Vec3f direction) const;
+  float trianglePdf(const Placement& p, const Hit& hit, Vec3f direction, float time = kMiddle) const;
 
  private:
   enum class Kind : uint8_t {

@@ -4,11 +4,26 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "math/error.h"
 
 namespace wardmis {
+namespace {
+
+bool deforms(const Mesh& mesh) {
+  return std::any_of(mesh.parts.begin(), mesh.parts.end(), [](const MeshPart& p) { return !p.movedPositions.empty(); });
+}
+
+}  // namespace
+
+Corners movedCorners(const Shape& s, const uint32_t* i, float time) {
+  const auto [first, t] = stepAt(s.motion->size(), time);
+  const Vec3f *a = (*s.motion)[first], *b = (*s.motion)[first + 1];
+  const auto mix = [&, t = t](uint32_t v) { return a[v] * (1 - t) + b[v] * t; };
+  return {mix(i[0]), mix(i[1]), mix(i[2])};
+}
 
 Geometry::Geometry(const Scene& scene) {
   std::vector<uint32_t> uses(scene.meshes.size(), 0);
@@ -17,15 +32,25 @@ Geometry::Geometry(const Scene& scene) {
   const auto addShapes = [&](const Mesh& mesh, const Affine* transform) {
     for (const MeshPart& part : mesh.parts) {
       // A copy even where nothing moves: Embree reads 16 bytes at each vertex, also at the last one.
-      std::vector<Vec3f>& moved = positions.emplace_back(part.positions.size() + 1);
+      std::vector<Vec3f>& placed = positions.emplace_back(part.positions.size() + 1);
+      const Vec3f* own = placed.data();
       tbb::parallel_for(tbb::blocked_range<size_t>(0, part.positions.size(), 1 << 15), [&](const auto& range) {
         for (size_t v = range.begin(); v != range.end(); ++v)
-          moved[v] = transform != nullptr ? transform->point(part.positions[v]) : part.positions[v];
+          placed[v] = transform != nullptr ? transform->point(part.positions[v]) : part.positions[v];
       });
+      const std::vector<const Vec3f*>* motion = nullptr;
+      if (!part.movedPositions.empty()) {
+        std::vector<const Vec3f*>& list = this->moved.emplace_back();
+        for (const Array<Vec3f>& step : part.movedPositions) {
+          positions.emplace_back(step.data.begin(), step.data.end()).emplace_back();
+          list.push_back(positions.back().data());
+        }
+        motion = &list;
+      }
       for (const Primitive& p : part.primitives)
         if (!p.indices.empty())
-          shapes.push_back({&part, moved.data(), part.positions.size(), p.indices.data.data(),
-                            static_cast<uint32_t>(p.indices.size() / 3), p.material});
+          shapes.push_back({&part, own, part.positions.size(), p.indices.data.data(),
+                            static_cast<uint32_t>(p.indices.size() / 3), p.material, 0, motion});
     }
   };
 
@@ -34,7 +59,7 @@ Geometry::Geometry(const Scene& scene) {
   placements.reserve(scene.instances.size());
   for (const Instance& instance : scene.instances) {
     const auto m = static_cast<size_t>(instance.mesh);
-    const bool flat = uses[m] == 1;
+    const bool flat = uses[m] == 1 && !instance.motion && !deforms(scene.meshes[m]);
     auto& [first, count] = sharedShapes[m];
     if (flat || first == kNone) {
       first = static_cast<uint32_t>(shapes.size());
@@ -42,8 +67,9 @@ Geometry::Geometry(const Scene& scene) {
       count = static_cast<uint32_t>(shapes.size()) - first;
     }
     if (count == 0) continue;
-    placements.push_back({instance.toWorld, instance.mesh, first, count, flat, instance.visibility, 0, &instance.name,
-                          instance.object.get()});
+    placements.push_back({instance.toWorld, instance.mesh, first, count, instance.holdout, flat, instance.visibility, 0,
+                          &instance.name, instance.object.get(),
+                          instance.motion ? &frames.emplace_back(*instance.motion) : nullptr});
     for (uint32_t s = first; s < first + count; ++s) triangles += shapes[s].triangles;
   }
 
@@ -59,6 +85,9 @@ Geometry::Geometry(const Scene& scene) {
     auto& [lo, hi] = boxes[s];
     const Shape& shape = shapes[s];
     for (size_t i = 0; i < size_t{shape.triangles} * 3; ++i) grow(lo, hi, shape.positions[shape.indices[i]]);
+    if (shape.motion == nullptr) return;
+    for (const Vec3f* step : *shape.motion)
+      for (size_t i = 0; i < size_t{shape.triangles} * 3; ++i) grow(lo, hi, step[shape.indices[i]]);
   });
   for (const Placement& p : placements)
     for (uint32_t s = p.firstShape; s < p.firstShape + p.shapes; ++s)
@@ -66,6 +95,10 @@ Geometry::Geometry(const Scene& scene) {
         const auto& [lo, hi] = boxes[s];
         const Vec3f c{(k & 1) != 0 ? hi.x : lo.x, (k & 2) != 0 ? hi.y : lo.y, (k & 4) != 0 ? hi.z : lo.z};
         grow(lower, upper, p.flat ? c : p.toWorld.point(c));
+        if (p.motion == nullptr) continue;
+        const size_t steps = p.motion->steps().size();
+        for (size_t i = 0; i < steps; ++i)
+          grow(lower, upper, p.motion->at(static_cast<float>(i) / static_cast<float>(steps - 1)).point(c));
       }
   if (placements.empty()) lower = upper = {0, 0, 0};
   if (!isFinite(lower) || !isFinite(upper))

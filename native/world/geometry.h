@@ -3,10 +3,13 @@
 // placements (an instance of a mesh). A mesh that is used once is moved into world space and needs no transform.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <deque>
 #include <vector>
 
 #include "scene/scene.h"
+#include "world/motion.h"
 
 namespace wardmis {
 
@@ -18,33 +21,62 @@ struct Shape {
   uint32_t triangles = 0;
   int material = 0;
   uint32_t emitterOffset = 0;  // emissive shapes: of the first triangle, from the placement's firstEmitter
+  const std::vector<const Vec3f*>* motion = nullptr;  // positions at equal steps of the time; null: it keeps its shape
 };
+
+using Corners = std::array<Vec3f, 3>;
+Corners movedCorners(const Shape& s, const uint32_t* i, float time);
+// Of a triangle, where s.positions are.
+inline Corners cornersOf(const Shape& s, uint32_t triangle, float time) {
+  const uint32_t* i = s.indices + 3 * size_t{triangle};
+  if (s.motion != nullptr) [[unlikely]]
+    return movedCorners(s, i, time);
+  return {s.positions[i[0]], s.positions[i[1]], s.positions[i[2]]};
+}
 
 struct Placement {
   Affine toWorld;
   int mesh = 0;
   uint32_t firstShape = 0, shapes = 0;  // into Geometry::shapes
+  bool holdout = false;                 // the camera sees a hole there
   bool flat = false;                    // shapes' positions are in world space already
   uint8_t visibility = kSeenByAll;
   uint32_t firstEmitter = 0;  // of its emissive triangles
   const std::string* name = nullptr;
-  const ObjectData* object = nullptr;  // null: as it is by default
+  const ObjectData* object = nullptr;   // null: as it is by default
+  const MovingFrame* motion = nullptr;  // of toWorld; null: it stands
+
+  Placement at(float time) const {  // where it is then
+    Placement p = *this;
+    if (motion != nullptr) p.toWorld = motion->at(time);
+    return p;
+  }
 };
 
 struct Geometry {
   std::vector<Shape> shapes;
   std::vector<Placement> placements;
-  std::vector<std::vector<Vec3f>> positions;  // of all shapes, each padded by one vertex
-  uint64_t triangles = 0;                     // placed, instances counted
-  Vec3f lower{0, 0, 0}, upper{0, 0, 0};       // bounds, world space
+  std::vector<std::vector<Vec3f>> positions;    // of all shapes, each padded by one vertex
+  std::deque<MovingFrame> frames;               // of placements that move
+  std::deque<std::vector<const Vec3f*>> moved;  // of shapes that deform
+  uint64_t triangles = 0;                       // placed, instances counted
+  Vec3f lower{0, 0, 0}, upper{0, 0, 0};         // bounds, world space
 
   explicit Geometry(const Scene& scene);
   Vec3f center() const { return (lower + upper) * 0.5f; }
   float radius() const { return std::max(length(upper - lower) * 0.5f, 1e-6f); }
 
-  Vec3f corner(const Placement& p, const Shape& s, uint32_t triangle, int k) const {
-    const Vec3f v = s.positions[s.indices[3 * size_t{triangle} + static_cast<size_t>(k)]];
-    return p.flat ? v : p.toWorld.point(v);
+  bool moves() const { return !frames.empty() || !moved.empty(); }
+
+  // Of a triangle, in world space.
+  static Corners corners(const Placement& p, const Shape& s, uint32_t triangle, float time = kMiddle) {
+    Corners c = cornersOf(s, triangle, time);
+    if (p.flat) return c;
+    if (p.motion != nullptr) [[unlikely]] {
+      const Affine m = p.motion->at(time);
+      return {m.point(c[0]), m.point(c[1]), m.point(c[2])};
+    }
+    return {p.toWorld.point(c[0]), p.toWorld.point(c[1]), p.toWorld.point(c[2])};
   }
 };
 

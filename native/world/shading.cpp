@@ -144,8 +144,9 @@ void fill(const Scene& scene, const ShadedPoint& p, const Program& program, Shad
     orthonormals(c.trueNormal, c.position.dx, c.position.dy);
     c.position.dx *= size;
     c.position.dy *= size;
-    const auto edge = [&](int k) {
-      const Vec3f e = p.shape.positions[i[k]] - p.shape.positions[i[0]];
+    const Corners corner = cornersOf(p.shape, p.triangle, p.path.time);
+    const auto edge = [&](size_t k) {
+      const Vec3f e = corner[k] - corner[0];
       return frame(p.placement.flat ? e : p.placement.toWorld.vector(e));
     };
     const Vec3f e1 = edge(1), e2 = edge(2);
@@ -154,7 +155,9 @@ void fill(const Scene& scene, const ShadedPoint& p, const Program& program, Shad
   }
   c.parametric = at.of({1, 0, 0}, {0, 1, 0}, {0, 0, 0});
   // the mesh's own positions, whether the placement is flat or not
-  const Vec3f o0 = part.positions[i[0]], o1 = part.positions[i[1]], o2 = part.positions[i[2]];
+  const auto [o0, o1, o2] = p.shape.motion != nullptr
+                                ? cornersOf(p.shape, p.triangle, p.path.time)
+                                : Corners{part.positions[i[0]], part.positions[i[1]], part.positions[i[2]]};
   if ((program.reads & kReadsAttributes) != 0) {
     c.interpolatedNormal = part.normals.empty() ? safeNormalize(cross(o1 - o0, o2 - o0))
                                                 : at.value(part.normals[i[0]], part.normals[i[1]], part.normals[i[2]]);
@@ -230,15 +233,12 @@ void runProgram(const Scene& scene, const ShadedPoint& point, Slots& slots) {
 }
 
 Rgb emissionAt(const Scene& scene, const Placement& placement, const Shape& shape, uint32_t triangle, float u, float v,
-               Vec3f from, int bounces) {
+               Vec3f from, int bounces, float time) {
   const Material& m = scene.materials[static_cast<size_t>(shape.material)];
   const MeshPart& part = *shape.part;
   const uint32_t* i = shape.indices + 3 * size_t{triangle};
-  const auto corner = [&](int k) {
-    const Vec3f p = shape.positions[i[k]];
-    return placement.flat ? p : placement.toWorld.point(p);
-  };
-  const Vec3f a = corner(0), ab = corner(1) - a, ac = corner(2) - a;
+  const Corners corner = Geometry::corners(placement, shape, triangle, time);
+  const Vec3f a = corner[0], ab = corner[1] - a, ac = corner[2] - a;
   const Vec3f position = a + (ab * u + ac * v);
   Vec3f geometric = normalize(cross(ab, ac)), normal = geometric;
   if (!part.normals.empty()) {
@@ -252,6 +252,7 @@ Rgb emissionAt(const Scene& scene, const Placement& placement, const Shape& shap
   const bool turned = dot(geometric, wo) < 0;
   if (turned) geometric = -geometric, normal = -normal;
   PathState path;
+  path.time = time;
   path.kinds = 0;  // it is looked at by a light sample, which is a ray of no kind
   path.depth = static_cast<uint8_t>(std::min(bounces + 1, 255));
   Slots slots;

@@ -24,9 +24,10 @@ struct ShadedPoint {
 // What the program of the point's material makes there.
 void runProgram(const Scene& scene, const ShadedPoint& point, Slots& slots);
 
-// A triangle's own point, for its light: seen from `from`, where a path has come to by so many scatterings.
+// A triangle's own point, for its light: seen from `from`, where a path of this time has come to by so many
+// scatterings.
 Rgb emissionAt(const Scene& scene, const Placement& placement, const Shape& shape, uint32_t triangle, float u, float v,
-               Vec3f from, int bounces);
+               Vec3f from, int bounces, float time = kMiddle);
 
 // A value that an input refers to; 0 for what is not finite.
 inline float finiteOrZero(float v) { return std::isfinite(v) ? v : 0; }

@@ -242,6 +242,7 @@ class Recorder:
         return self
 
     column = row = grid_flow = split = separator = label = template_node_view = prop_decorator = part
+    template_curve_mapping = part
 
 
 def drawn(panel, context):

@@ -185,11 +185,11 @@ class Integrand(ComparisonTest):
         self.assertIn("WardMIS shows Ward's reflection, Cycles Beckmann's or GGX, of material 'Plaster'", data["notes"])
 
     def test_what_is_not_exported_has_none(self):
-        self.scene.render.use_motion_blur = True
+        self.scene.objects["Floor"].is_shadow_catcher = True
         wardmis.compare(self.folder, **SMALL)
         data = self.manifest()
         self.assertIs(data["common_reference"], False)
-        self.assertIn("motion blur is not supported; the frame is rendered at its own time", data["notes"])
+        self.assertIn("shadow catchers are not supported", "\n".join(data["notes"]))
 
     def test_cycles_with_its_biases_has_none(self):
         self.scene.cycles.use_denoising = False  # not every Blender has a denoiser

@@ -443,9 +443,8 @@ class Visibility(SceneTest):
         layers["Indirect"].indirect_only = layers["Holdout"].holdout = True
         scene = self.gather()
         self.assertEqual({i.name: set(i.hidden_from) for i in scene.instances}["Indirect"], {"camera"})
-        self.assertEqual(
-            scene.notes, ["object 'Holdout': holdouts are not supported; it is rendered as any other object"]
-        )
+        self.assertEqual([i.name for i in scene.instances if i.holdout], ["Holdout"])
+        self.assertEqual(scene.notes, [])
 
     def test_light_linking_is_noted(self):
         quad = self.add_quad()
@@ -454,9 +453,9 @@ class Visibility(SceneTest):
         quad.light_linking.receiver_collection = bpy.data.collections.new("Receivers")
         self.assertIn("object 'Quad': light linking is not supported", self.gather().notes[0])
 
-    def test_motion_blur_is_noted(self):
+    def test_motion_blur_without_a_render_is_noted(self):
         self.scene.render.use_motion_blur = True
-        self.assertIn("motion blur is not supported", self.gather().notes[0])
+        self.assertIn("motion blur is left out", self.gather().notes[0])
 
 
 class AsRendered(SceneTest):

@@ -380,12 +380,14 @@ class Camera(SceneTest):
         for kind, (projection, (left, right, bottom, top)) in expected.items():
             with self.subTest(kind):
                 settings.panorama_type = kind
+                data.update_tag()  # for what was Cycles' own
                 camera = self.gather().camera
                 self.assertEqual(camera.projection, projection)
                 x, y = 0.1 * (right - left), 0.25 * (top - bottom)
                 np.testing.assert_allclose(camera.view_plane, (left + x, right + x, bottom + y, top + y), 1e-6)
                 self.assertEqual(camera.fov, 2.0 if "FISHEYE" in kind else None)
         settings.panorama_type, settings.longitude_max = "EQUIRECTANGULAR", -1.0
+        data.update_tag()
         with self.assertRaisesRegex(ExportError, "camera 'Camera' sees nothing: its panorama"):
             self.gather()
 

@@ -71,6 +71,7 @@ class Usage(CommandTest):
             ((*render, "--resolution", "48"), "WIDTHxHEIGHT"),
             ((*render, "--resolution", "0x10"), "WIDTHxHEIGHT"),
             ((*render, "--passes", "combined,beauty"), "beauty"),
+            ((*render, "--passes", "combined=Beauty"), "cannot be a name"),
             (("render", self.scene(), "-o", self.folder / "out.png"), "ends in .exr"),
             ((*render, "--preview", self.folder / "preview"), "ends in .exr"),
             (("render", self.scene(), "-o", ""), "--output: is empty"),
@@ -228,6 +229,17 @@ class Image(CommandTest):
         self.assertEqual(set(some), {"Combined", "Depth"})
         for name, pixels in some.items():
             np.testing.assert_array_equal(pixels, whole[name])
+
+    def test_passes_of_what_is_met_first(self):
+        self.render(
+            "--spp", "2", "--passes", "position,uv,object-index=IndexOB,material-index,emission,environment=Env,depth"
+        )
+        passes = exr.read(self.out).passes
+        self.assertEqual(set(passes), {"Position", "UV", "IndexOB", "Material Index", "Emission", "Env", "Depth"})
+        self.assertEqual(passes["UV"].shape[2], 3)
+        hit = passes["Depth"][..., 0] < 1e10
+        self.assertTrue(hit.sum() > 0)
+        np.testing.assert_array_equal(np.abs(passes["Position"]).max(axis=2) > 0, hit)
 
     def test_resolution(self):
         self.render("--spp", "1", "--resolution", "33x70")

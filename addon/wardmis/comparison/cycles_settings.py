@@ -69,7 +69,6 @@ def unbiased(scene: Any, bounces: Bounces) -> Iterator[Setting]:
     yield cycles, "scrambling_distance", 1.0
     yield cycles, "use_camera_cull", False
     yield cycles, "use_distance_cull", False
-    yield scene.render, "use_motion_blur", False
     yield cycles, "max_bounces", bounces.total
     yield cycles, "transmission_bounces", bounces.total
     yield cycles, "diffuse_bounces", min(bounces.diffuse, bounces.total)

@@ -11,6 +11,7 @@ import bpy
 
 from .context import ExportCancelled, ExportError
 from .glb import write_glb
+from .motion import SetFrame
 from .scene import gather_scene
 
 __all__ = ["VERSION", "ExportCancelled", "ExportError", "export_depsgraph"]
@@ -19,9 +20,14 @@ VERSION = "0.1.0"  # the same as in bl_info and blender_manifest.toml
 
 
 def export_depsgraph(
-    depsgraph: Any, path: str | os.PathLike[str], camera: Any = None, cancelled: Callable[[], bool] | None = None
+    depsgraph: Any,
+    path: str | os.PathLike[str],
+    camera: Any = None,
+    cancelled: Callable[[], bool] | None = None,
+    set_frame: SetFrame | None = None,
 ) -> list[str]:
-    """Writes what the render of `depsgraph` needs to `path`; returns the notes for the user.
+    """Writes what the render of `depsgraph` needs to `path`; returns the notes for the user. `set_frame` takes `depsgraph` to other
+    times, for motion blur; it is left at its own.
 
     Raises ExportError (the scene cannot be exported, or the file not written) or ExportCancelled.
     """
@@ -31,6 +37,6 @@ def export_depsgraph(
             raise ExportCancelled
 
     generator = f"WardMIS {VERSION}, Blender {bpy.app.version_string}"
-    scene = gather_scene(depsgraph, generator, camera, cancelled)
+    scene = gather_scene(depsgraph, generator, camera, cancelled, set_frame)
     write_glb(scene, path, check_cancelled)
     return scene.notes

@@ -100,7 +100,10 @@ class _Encoder:
         root = self._node({"name": "Blender (Z up)", "matrix": _column_major(Z_UP)})
         children = self._instances(scene.instances, scene.meshes)
         children += [self._light_node(light, i) for i, light in enumerate(scene.lights)]
-        camera = self._node({"name": scene.camera.name, "matrix": _column_major(scene.camera.matrix), "camera": 0})
+        motion = {"motion": [_column_major(matrix) for matrix in scene.camera.motion]} if scene.camera.motion else {}
+        camera = self._node(
+            {"name": scene.camera.name, "matrix": _column_major(scene.camera.matrix), "camera": 0}, motion
+        )
         self.nodes[root]["children"] = [*children, camera]
         document["cameras"] = [_camera(scene.camera)]
         document["scenes"] = [{"nodes": [root]}]
@@ -220,10 +223,10 @@ class _Encoder:
             }
         if material.normal is not None:
             extension["normal"] = {"result": material.normal.result}
+        if material.index:
+            extension["index"] = material.index
         if material.program is not None:
             extension["program"] = {"operations": material.program.operations}
-            if material.index and material.program.reads("material-index"):
-                extension["index"] = material.index
         return {
             "name": material.name,
             **self._core_material(material),
@@ -274,7 +277,12 @@ class _Encoder:
         attributes |= {f"_{name}": self._accessor(values) for name, values in mesh.attributes.items()}
         for name, values in mesh.tangents.items():
             attributes[f"_TANGENT_{name}" if name else "TANGENT"] = self._accessor(values)
-        sets = {"extensions": {EXTENSION: {"uvSets": names}}} if any(names) else {}
+        own: dict[str, Any] = {"uvSets": names} if any(names) else {}
+        if mesh.motion_positions:
+            own["motion"] = {"positions": [self._accessor(p, "POSITION") for p in mesh.motion_positions]}
+            if mesh.motion_normals:
+                own["motion"]["normals"] = [self._accessor(n) for n in mesh.motion_normals]
+        sets = {"extensions": {EXTENSION: own}} if own else {}
         primitives = [
             {
                 "attributes": attributes,
@@ -291,7 +299,8 @@ class _Encoder:
         groups: dict[tuple[Any, ...], list[InstanceData]] = {}
         for instance in instances:
             key = (instance.mesh, instance.hidden_from, instance.color, instance.index, instance.random)
-            groups.setdefault((*key, instance.attributes), []).append(instance)
+            alone_by = id(instance) if instance.motion else instance.holdout  # what moves has a node of its own
+            groups.setdefault((*key, instance.attributes, alone_by), []).append(instance)
         nodes = []
         for (mesh, *_), members in groups.items():
             alone = members
@@ -351,6 +360,10 @@ class _Encoder:
             },
             "notes": scene.notes,
         }
+        if film.shutter:
+            result["film"]["shutter"] = film.shutter
+        if film.keep_uvs:
+            result["film"]["keepUvs"] = True
         worlds = [_world(world) for world in scene.worlds if any(world.radiance)]
         if worlds:
             result["world"] = worlds[0] if len(worlds) == 1 else worlds
@@ -402,6 +415,10 @@ def _node_extension(instance: InstanceData, mesh: MeshData) -> dict[str, Any]:
         result["color"] = list(instance.color)
     if instance.index:
         result["index"] = instance.index
+    if instance.motion:
+        result["motion"] = [_column_major(matrix) for matrix in instance.motion]
+    if instance.holdout:
+        result["holdout"] = True
     if instance.random:
         result["random"] = instance.random
     if instance.attributes:
@@ -488,6 +505,8 @@ def _camera(camera: CameraData) -> dict[str, Any]:
         extension["fov"] = camera.fov
     if camera.polynomial is not None:
         extension["polynomial"] = list(camera.polynomial)
+    if camera.view_planes:
+        extension["viewPlanes"] = [list(plane) for plane in camera.view_planes]
     core: dict[str, Any]
     if camera.projection != "orthographic":  # a panorama is none of core glTF's: others see its middle
         if camera.projection != "perspective":

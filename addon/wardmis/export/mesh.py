@@ -137,7 +137,7 @@ def assemble(name: str, geometry: Geometry, materials: tuple[int, ...]) -> MeshD
         geometry.uv_sets,
         geometry.attributes,
         geometry.tangents,
-        geometry.generated,
+        generated=geometry.generated,
     )
 
 

@@ -175,6 +175,8 @@ class MeshData:
     uv_sets: dict[str, np.ndarray] = field(default_factory=dict)  # those that programs read by name
     attributes: dict[str, np.ndarray] = field(default_factory=dict)  # (n,) or (n, 2 to 4) float32, by name
     tangents: dict[str, np.ndarray] = field(default_factory=dict)  # (n, 4) float32, by UV set
+    motion_positions: list[np.ndarray] = field(default_factory=list)  # at equal steps of the shutter's time
+    motion_normals: list[np.ndarray] = field(default_factory=list)
     generated: tuple[float, ...] | None = None  # 12 numbers, from object space to Generated coordinates
 
 
@@ -188,6 +190,8 @@ class InstanceData:
     index: int = 0
     random: float = 0.0
     attributes: tuple[tuple[str, tuple[float, ...]], ...] = ()  # of the object, not the mesh
+    motion: list[np.ndarray] = field(default_factory=list)  # `matrix` at equal steps of the shutter's time
+    holdout: bool = False
 
 
 VISIBILITY = ("camera", "diffuse", "glossy", "shadow")
@@ -230,6 +234,8 @@ class CameraData:
     blade_ratio: float = 1.0
     fov: float | None = None  # fisheyes: full angle
     polynomial: tuple[float, ...] | None = None  # fisheye-polynomial: five
+    motion: list[np.ndarray] = field(default_factory=list)  # `matrix` at equal steps of the shutter's time
+    view_planes: list[tuple[float, float, float, float]] = field(default_factory=list)  # likewise
 
 
 @dataclass
@@ -240,6 +246,8 @@ class FilmData:
     filter_width: float = 1.5
     exposure: float = 1.0
     transparent: bool = False
+    keep_uvs: bool = False  # for the pass
+    shutter: dict[str, Any] = field(default_factory=dict)
 
 
 @dataclass

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from .light import export_light
 from .material import export_material
 from .mesh import Geometry, Wanted, assemble, gather_geometry, transformed, wanted_of
 from .model import VISIBILITY, ColorInput, InstanceData, MaterialData, ScalarInput, SceneData
+from .motion import Motion, Opening, SetFrame, at_its_own_frame_again, go_to, opening_of, shutter_of
 from .world import export_worlds
 
 NO_MATERIAL = MaterialData("(no material)", diffuse=ColorInput((0.8, 0.8, 0.8)))  # as Cycles shows it
@@ -65,18 +67,49 @@ def _hash(x: int, y: int) -> int:
 
 
 def gather_scene(
-    depsgraph: Any, generator: str, camera: Any = None, cancelled: Callable[[], bool] | None = None
+    depsgraph: Any,
+    generator: str,
+    camera: Any = None,
+    cancelled: Callable[[], bool] | None = None,
+    set_frame: SetFrame | None = None,
 ) -> SceneData:
-    """Everything that the render of `depsgraph` needs. `camera`: instead of the scene's active one.
+    """Everything that the render of `depsgraph` needs. `camera`: instead of the scene's active one. `set_frame`: takes `depsgraph` to
+    another time; without it nothing is blurred by its motion.
 
     Raises ExportError with a message for the user, and ExportCancelled once `cancelled()` answers true.
     """
+    opening = opening_of(depsgraph.scene_eval, depsgraph.view_layer_eval)
+    if opening is None:
+        return _gather(depsgraph, generator, camera, cancelled, None, None)
+    if set_frame is None:
+        result = _gather(depsgraph, generator, camera, cancelled, None, None)
+        result.notes.append("motion blur is left out: it needs a render; the frame is exported at its own time")
+        return result
+    with at_its_own_frame_again(depsgraph.scene, set_frame):
+        return _gather(depsgraph, generator, camera, cancelled, opening, set_frame)
+
+
+def _gather(
+    depsgraph: Any,
+    generator: str,
+    camera: Any,
+    cancelled: Callable[[], bool] | None,
+    opening: Opening | None,
+    set_frame: SetFrame | None,
+) -> SceneData:
+    frame = depsgraph.scene_eval.frame_current
+    if opening is not None and set_frame is not None and opening.middle != frame + depsgraph.scene_eval.frame_subframe:
+        go_to(set_frame, opening.middle)
     scene = depsgraph.scene_eval
     camera = camera or scene.camera
     film = export_film(scene)
-    context = ExportContext(export_image, cancelled, scene.frame_current)
-    gatherer = _Gatherer(depsgraph, context)
-    _note_scene_settings(scene, context)
+    film.keep_uvs = depsgraph.view_layer.use_pass_uv
+    context = ExportContext(export_image, cancelled, frame)
+    motion = None
+    if opening is not None and set_frame is not None:
+        motion = Motion(opening, set_frame, depsgraph.scene, context)
+        film.shutter = shutter_of(scene)
+    gatherer = _Gatherer(depsgraph, context, motion)
     camera_data = export_camera(camera.evaluated_get(depsgraph) if camera else None, scene.render)
     context.check_finite(film, "the scene's film")
     context.check_finite(camera_data, f"camera '{camera_data.name}'")
@@ -84,7 +117,7 @@ def gather_scene(
     context.owner = ""
     layer = depsgraph.view_layer_eval
     worlds = export_worlds(compat.world_of(layer, scene), context) if layer.use_sky else []
-    return SceneData(
+    result = SceneData(
         generator,
         film,
         camera_data,
@@ -97,11 +130,9 @@ def gather_scene(
         gatherer.lights,
         context.notes,
     )
-
-
-def _note_scene_settings(scene: Any, context: ExportContext) -> None:
-    if scene.render.use_motion_blur:
-        context.note("motion blur is not supported; the frame is rendered at its own time")
+    if motion is not None:
+        motion.follow(depsgraph, camera.original, result)
+    return result
 
 
 def _flat(axes: np.ndarray) -> np.ndarray:
@@ -126,8 +157,9 @@ def _is_gas_domain(obj: Any) -> bool:
 class _Gatherer:
     """One pass over the instances of the depsgraph; what is shared is exported once."""
 
-    def __init__(self, depsgraph: Any, context: ExportContext) -> None:
+    def __init__(self, depsgraph: Any, context: ExportContext, motion: Motion | None) -> None:
         self.context = context
+        self.motion = motion
         self.view_layer = depsgraph.view_layer
         self.scene = depsgraph.scene
         self.override = depsgraph.view_layer_eval.material_override
@@ -213,19 +245,21 @@ class _Gatherer:
             hidden = self._hidden_from(obj, instance)
             if len(hidden) < len(VISIBILITY):
                 data = InstanceData(obj.name, index, self._matrix(instance), hidden)
+                data.holdout = bool(obj.original.is_holdout or obj.original.holdout_get(view_layer=self.view_layer))
                 self._describe(data, obj, instance, materials)
                 self.instances.append(data)
+                if self.motion is not None:
+                    self.motion.add(instance, data)
 
     def _describe(self, data: InstanceData, obj: Any, instance: Any, materials: tuple[int, ...]) -> None:
         """What programs read of the object."""
-        for program in (self.materials[m].program for m in set(materials)):
-            if program is None:
-                continue
+        programs = [p for m in set(materials) if (p := self.materials[m].program) is not None]
+        if self.view_layer.use_pass_object_index or any(p.reads("object-index") for p in programs):
+            data.index = obj.pass_index
+        for program in programs:
             if program.reads("object-color", "object-alpha"):
                 r, g, b, a = obj.color
                 data.color = (r, g, b, a)
-            if program.reads("object-index"):
-                data.index = obj.pass_index
             if program.reads("object-random"):
                 data.random = random_of(instance.random_id if instance.is_instance else None, obj.name)
             if any(name.startswith(OF_OBJECT) for name in program.attributes):
@@ -243,6 +277,8 @@ class _Gatherer:
             )
             return None
         wanted = wanted_of(self.materials[m] for m in materials)
+        if self.view_layer.use_pass_uv:
+            wanted = replace(wanted, uv_sets=wanted.uv_sets | {""})
         key = (mesh.as_pointer(), wanted)
         if key not in self._geometry:
             with compat.whole_mesh(instance) as whole:
@@ -251,6 +287,8 @@ class _Gatherer:
         if geometry is None:
             return None
         self.meshes.append(assemble(mesh.name, geometry, materials))
+        if self.motion is not None:
+            self.motion.add_shape(instance, len(self.meshes) - 1, self.meshes[-1], geometry, wanted)
         return len(self.meshes) - 1
 
     def _slots(self, obj: Any, mesh: Any) -> tuple[int, ...]:
@@ -286,12 +324,10 @@ class _Gatherer:
         return self._hidden[key]
 
     def _note_compositing(self, original: Any) -> None:
-        holdout = original.is_holdout or original.holdout_get(view_layer=self.view_layer)
-        for flag, what in ((holdout, "holdouts"), (original.is_shadow_catcher, "shadow catchers")):
-            if flag:
-                self.context.note(
-                    f"object '{original.name}': {what} are not supported; it is rendered as any other object"
-                )
+        if original.is_shadow_catcher:
+            self.context.note(
+                f"object '{original.name}': shadow catchers are not supported; it is rendered as any other object"
+            )
 
     def _note_light_linking(self, original: Any) -> None:
         linking = getattr(original, "light_linking", None)

@@ -2,7 +2,7 @@
 """Exposure, transparency and filters of the film."""
 
 import bpy
-from stage import ball, box, diffuse, scene, stage
+from stage import ball, box, collection, diffuse, lamp, scene, stage
 
 
 def things():
@@ -50,3 +50,35 @@ def view_transform():
     """An image file of linear numbers does not see the view's transform nor its exposure."""
     made = things()
     made.view_settings.exposure, made.view_settings.gamma = 1.0, 1.5
+
+
+@scene
+def holdout():
+    """A hole in the picture, also where the sky is in it; shadows and light are as without it."""
+    things()
+    bpy.data.objects["Box"].is_holdout = True
+
+
+@scene(bounces=2)
+def holdout_transparent():
+    """The light that it reflects stays."""
+    made = things()
+    made.render.film_transparent = True
+    bpy.data.objects["Ball"].is_holdout = True
+    bpy.data.objects["Box"].location.x = -0.4
+
+
+@scene
+def holdout_collection():
+    things()
+    held = collection("Held", bpy.data.objects["Box"], linked=True)
+    bpy.context.view_layer.layer_collection.children[held.name].holdout = True
+
+
+@scene
+def holdout_before_a_lamp():
+    """And behind one that the camera sees."""
+    made = things()
+    made.render.film_transparent = True
+    bpy.data.objects["Box"].is_holdout = True
+    lamp("AREA", (-1, -3, 2.2), 30, target=(-1, -7, 3), size=0.8).visible_camera = True

@@ -397,7 +397,7 @@ TEST(Glb, FitsCoreCamerasToTheFilm) {
   EXPECT_FLOAT_EQ(s.camera->clipNear, 0.5f);
   b.root["nodes"][1]["camera"] = 1;
   s = read(b);
-  EXPECT_TRUE(s.camera->orthographic);
+  EXPECT_TRUE(s.camera->orthographic());
   EXPECT_FLOAT_EQ(s.camera->bottom, -2);
   EXPECT_FLOAT_EQ(s.camera->clipFar, 9);
 }

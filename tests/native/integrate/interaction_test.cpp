@@ -58,9 +58,8 @@ TEST(Interaction, RayThatLeavesDoesNotMeetItsSurface) {
         for (int j = 0; j < 40; ++j) {
           const Shape& shape = geometry.shapes[0];
           const Vec2f b = toTriangle(Vec2f{unit(random), unit(random)});
-          const Vec3f p = geometry.corner(geometry.placements[0], shape, 0, 0) * (1 - b.x - b.y) +
-                          geometry.corner(geometry.placements[0], shape, 0, 1) * b.x +
-                          geometry.corner(geometry.placements[0], shape, 0, 2) * b.y;
+          const Corners corner = Geometry::corners(geometry.placements[0], shape, 0);
+          const Vec3f p = corner[0] * (1 - b.x - b.y) + corner[1] * b.x + corner[2] * b.y;
           Ray ray;
           ray.direction = toCone(Vec2f{unit(random), unit(random)}, 2.0f);
           ray.origin = p - ray.direction * (3 * place.size);

@@ -61,11 +61,11 @@ inline void lookFrom(Scene& scene, float theta, float half, int resolution) {
   Camera c;
   const Vec3f z{std::sin(theta), 0, std::cos(theta)}, x{0, 1, 0};
   c.toWorld = {x, cross(z, x), z, z * 50};
-  c.orthographic = true;
+  c.projection = Projection::kOrthographic;
   c.left = c.bottom = -half;
   c.right = c.top = half;
   scene.camera = c;
-  scene.film = {resolution, resolution, 0, 0, resolution, resolution, FilterType::kBox, 1, 1, false};
+  scene.film = {resolution, resolution, 0, 0, resolution, resolution, FilterType::kBox, 1, 1, false, false, {}};
 }
 
 // The scene's sky; there is one from the first call on.
