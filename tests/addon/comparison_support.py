@@ -69,7 +69,7 @@ class ComparisonTest(SceneTest):
 
     def make_shiny(self) -> None:
         tree = self.material.node_tree
-        node = tree.nodes.new("ShaderNodeBsdfAnisotropic")
+        node = tree.nodes.new("WardBSDFNode")
         tree.links.new(node.outputs[0], tree.get_output_node("ALL").inputs["Surface"])
 
 

@@ -177,12 +177,26 @@ class Integrand(ComparisonTest):
         wardmis.compare(self.folder, **SMALL)
         self.assertIs(self.manifest()["common_reference"], True)
 
-    def test_shiny_material_has_none(self):
+    def test_cycles_own_models_have_one(self):
+        for number, kind in enumerate(("ShaderNodeBsdfGlossy", "ShaderNodeBsdfGlass", "ShaderNodeBsdfPrincipled")):
+            material = self.material.copy()
+            tree = material.node_tree
+            node = tree.nodes.new(kind)
+            node.distribution = "GGX"
+            tree.links.new(node.outputs[0], tree.get_output_node("ALL").inputs["Surface"])
+            mesh = bpy.data.meshes.new(kind)
+            mesh.from_pydata([(number, 9, 0), (number, 10, 0), (number, 10, 1)], [], [(0, 1, 2)])
+            mesh.materials.append(material)
+            self.scene.collection.objects.link(bpy.data.objects.new(kind, mesh))
+        wardmis.compare(self.folder, **SMALL)
+        self.assertIs(self.manifest()["common_reference"], True, self.manifest()["notes"])
+
+    def test_wards_material_has_none(self):
         self.make_shiny()
         wardmis.compare(self.folder, **SMALL)
         data = self.manifest()
         self.assertIs(data["common_reference"], False)
-        self.assertIn("WardMIS shows Ward's reflection, Cycles Beckmann's or GGX, of material 'Plaster'", data["notes"])
+        self.assertIn("WardMIS shows Ward's reflection, Cycles Beckmann's, of material 'Plaster'", data["notes"])
 
     def test_what_is_not_exported_has_none(self):
         self.scene.objects["Floor"].is_shadow_catcher = True
@@ -549,6 +563,17 @@ class Files(unittest.TestCase):
         document = {"materials": [material(n) for n in "ABCDE"], "extensions": {"WARDMIS_scene": {"notes": []}}}
         (reason,) = SceneFile("", document).other_than_blenders()
         self.assertTrue(reason.endswith("of material 'A', 'B', 'C' and 2 more"), reason)
+
+    def test_models_that_cycles_lacks(self):
+        def reasons(**closure):
+            material = {"name": "A", "extensions": {"WARDMIS_scene": {"closures": [{"weight": {}, **closure}]}}}
+            document = {"materials": [material], "extensions": {"WARDMIS_scene": {"notes": ["fog"]}}}
+            return SceneFile("", document).other_than_blenders()
+
+        self.assertEqual(reasons(type="glossy", distribution="multi-ggx", version=4), ["fog"])
+        self.assertEqual(reasons(type="ward")[0], "WardMIS shows Ward's reflection, Cycles Beckmann's, of material 'A'")
+        self.assertIn("from facet to facet", reasons(type="principled", distribution="multi-ggx", version=3)[0])
+        self.assertIn("Ashikhmin", reasons(type="glossy", distribution="ashikhmin-shirley")[0])
 
     def test_checkpoints(self):
         self.assertEqual(converge.checkpoints(1), [1])

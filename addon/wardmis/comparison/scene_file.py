@@ -11,6 +11,11 @@ from pathlib import Path
 from typing import Any
 
 EXTENSION = "WARDMIS_scene"
+WARD = "WardMIS shows Ward's reflection, Cycles Beckmann's"
+WALK = "WardMIS shows GGX whose lost energy is added evenly, Cycles before 4.0 light that walks from facet to facet"
+ASHIKHMIN = (
+    "WardMIS shows Ashikhmin and Shirley's reflection, of which Cycles' sampling leaves some out at grazing angles"
+)
 
 
 @dataclass
@@ -26,19 +31,28 @@ class SceneFile:
     def notes(self) -> list[str]:
         return self.document["extensions"][EXTENSION]["notes"]
 
-    @property
-    def shiny(self) -> list[str]:
-        """The materials that reflect specularly: by Ward's model here, by another one elsewhere."""
-        materials = self.document.get("materials", [])
-        return [m["name"] for m in materials if "specular" in m.get("extensions", {}).get(EXTENSION, {})]
-
     def other_than_blenders(self) -> list[str]:
         """Why WardMIS' converged image is not that of Cycles; empty where both have the same integrand."""
-        shiny = self.shiny
-        if not shiny:
-            return list(self.notes)
-        names = ", ".join(f"'{name}'" for name in shiny[:3]) + (f" and {len(shiny) - 3} more" if len(shiny) > 3 else "")
-        return [f"WardMIS shows Ward's reflection, Cycles Beckmann's or GGX, of material {names}", *self.notes]
+        materials: dict[str, list[str]] = {}
+        for material in self.document.get("materials", []):
+            for difference in sorted(_differences(material.get("extensions", {}).get(EXTENSION, {}))):
+                materials.setdefault(difference, []).append(material["name"])
+        return [f"{difference}, of material {_named(names)}" for difference, names in materials.items()] + self.notes
+
+
+def _differences(surface: dict[str, Any]) -> set[str]:
+    """What of a material's extension Cycles has no equal of."""
+    found = {WARD} if "specular" in surface else set()
+    for closure in surface.get("closures", []):
+        found |= {WARD} if closure["type"] == "ward" else set()
+        distribution = closure.get("distribution")
+        found |= {WALK} if distribution == "multi-ggx" and closure.get("version") == 3 else set()
+        found |= {ASHIKHMIN} if distribution == "ashikhmin-shirley" else set()
+    return found
+
+
+def _named(names: list[str]) -> str:
+    return ", ".join(f"'{name}'" for name in names[:3]) + (f" and {len(names) - 3} more" if len(names) > 3 else "")
 
 
 def read_scene_file(path: Path) -> SceneFile:
