@@ -2,7 +2,9 @@
 """Shader trees -> MaterialData, and the notes about what has no counterpart."""
 
 import math
+import tempfile
 import unittest
+from pathlib import Path
 
 import bpy
 import numpy as np
@@ -382,6 +384,27 @@ class Trees(MaterialCase):
         other.target = "CYCLES"
         self.link(self.node("ShaderNodeBsdfDiffuse", Color=(0.7, 0.7, 0.7, 1)), other, "Surface")
         self.assertRgb(self.export().diffuse.value, (0.7, 0.7, 0.7))
+
+    def test_groups_that_their_file_lacks_give_nothing_and_are_named(self):
+        group = bpy.data.node_groups.new("Borrowed", "ShaderNodeTree")
+        compat.add_group_socket(group, "Shader", "NodeSocketShader", "OUTPUT")
+        self.link(group.nodes.new("ShaderNodeBsdfDiffuse"), group.nodes.new("NodeGroupOutput"))
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "library.blend"
+            bpy.data.libraries.write(str(path), {group})
+            bpy.data.node_groups.remove(group)
+            with bpy.data.libraries.load(str(path), link=True) as (_, wanted):
+                wanted.node_groups = ["Borrowed"]
+            library = bpy.data.libraries[-1]
+            user = self.tree.nodes.new("ShaderNodeGroup")
+            user.node_tree = wanted.node_groups[0]
+            self.link(user, self.output, "Surface")
+            bpy.data.libraries.write(str(path), {bpy.data.node_groups.new("Another", "ShaderNodeTree")})
+            library.reload()
+        data = self.export()
+        self.assertRgb((*data.diffuse.value, *data.specular.value, *data.emission.value), [0] * 9)
+        self.assertNoted("M", "Borrowed", "library.blend")
+        bpy.data.libraries.remove(library)
 
     def test_color_in_a_shaders_place_shines(self):
         rgb = self.node("ShaderNodeRGB")

@@ -103,6 +103,8 @@ class NodeUse:
                 converts(socket)
             elif is_group(node):
                 converts(output)
+                if node.node_tree is not None and not _has_inside(node):
+                    NodeUse(node, groups, self.owner).note(_lacking(node.node_tree))
                 ends = [n for n in _nodes_of(node) if n.bl_idname == "NodeGroupOutput" and n.is_active_output]
                 if not ends:
                     return found(None)
@@ -151,13 +153,23 @@ def _nodes_output(tree: Any) -> Any:
 def _group_paths(tree: Any, groups: tuple[Any, ...]) -> Iterator[tuple[Any, ...]]:
     """All groups in use, inner ones first, each with those around it."""
     for node in tree.nodes:
-        if is_group(node) and not node.mute and node.node_tree is not None:
+        if is_group(node) and not node.mute and _has_inside(node):
             yield from _group_paths(node.node_tree, (*groups, node))
             yield (*groups, node)
 
 
+def _has_inside(group: Any) -> bool:
+    """Where the file that a group's tree is linked from lacks it, its place is held by a tree of no type, without nodes."""
+    return group.node_tree is not None and group.node_tree.bl_idname == "ShaderNodeTree"
+
+
+def _lacking(tree: Any) -> str:
+    file = f" from '{tree.library.filepath}'" if tree.library else ""
+    return f"needs the node group '{tree.name}'{file}, which is not there; it gives nothing, as in Cycles"
+
+
 def _nodes_of(group: Any) -> Any:
-    return () if group.node_tree is None else group.node_tree.nodes
+    return group.node_tree.nodes if _has_inside(group) else ()
 
 
 def _link_to(socket: Any) -> Any:
