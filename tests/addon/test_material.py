@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 from wardmis import compat
 from wardmis.export.context import ExportContext
+from wardmis.export.folding import FOLDS
 from wardmis.export.image import export_image
 from wardmis.export.material import export_material
 
@@ -501,6 +502,31 @@ class Values(MaterialCase):
         names = {o["op"]: o for o in self.export(emission).program.operations}
         self.assertTrue(names["image"]["unassociate"] and names["image-alpha"]["unassociate"])
         self.assertTrue(self.context.images[0].pixels[0, 0, 0] < 64)  # they are multiplied before
+
+    def test_every_node_may_stand_behind_an_image_with_alpha(self):
+        """Whether an image's alpha counts is found by what Cycles folds, of operations with as many inputs as they have."""
+        image = self.image([[(0.5, 0.5, 0.5, 0.25)]], color_space="sRGB", is_float=False)
+        self.assertEqual(image.alpha_mode, "STRAIGHT")
+        texture = self.texture(image)
+        for kind in FOLDS:
+            probe = self.node(kind)
+            settings = [("", "")]
+            for name in ("operation", "blend_type", "data_type"):
+                settings += [
+                    (name, item.identifier) for item in getattr(probe.bl_rna.properties.get(name), "enum_items", ())
+                ]
+            for name, value in settings:
+                with self.subTest(kind=kind, **{name: value}):
+                    if name:
+                        setattr(probe, name, value)
+                    self.tree.links.clear()
+                    for socket in probe.inputs:
+                        if socket.enabled:
+                            self.tree.links.new(texture.outputs["Color"], socket)
+                    output = next(o for o in probe.outputs if o.enabled)
+                    self.tree.links.new(output, self.output.inputs["Surface"])
+                    export_material(self.material, ExportContext(export_image))
+            self.tree.nodes.remove(probe)
 
     def test_bump_has_its_height_at_three_places(self):
         diffuse, bump = self.node("ShaderNodeBsdfDiffuse"), self.node("ShaderNodeBump")

@@ -250,6 +250,8 @@ def _same(a: Folded, b: Folded) -> bool:
 
 def _operation(node: Any, inputs: Inputs) -> Any:
     """Of numbers or vectors."""
+    if len(inputs) == 1:
+        return _all(inputs)
     (first, a), (second, b) = inputs[0], inputs[-1 if node.operation == "SCALE" else 1]
     vectors = node.bl_idname == "ShaderNodeVectorMath"
     kind = node.operation
