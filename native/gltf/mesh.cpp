@@ -131,13 +131,21 @@ Mesh Meshes::read(const Json& json) {
     const int set = looked < 0 && keepUvs_ && attributes->find("TEXCOORD_0") ? 0 : looked;
     const std::string uvName = set < 0 ? "" : fmt::format("TEXCOORD_{}", set);
     const auto normal = attributes->find("NORMAL"), uv = set < 0 ? std::nullopt : attributes->find(uvName);
-    if (set >= 0 && !uv)
-      leftOut_.add("textures and direction of anisotropy on mesh " + json.described(),
-                   fmt::format("it has no {}: textures are looked up at (0, 0)", uvName));
+    const auto lacks = [&](const std::string& name) {
+      leftOut_.add(fmt::format("textures and direction of anisotropy of {} on primitive {} of mesh {}",
+                               materials_.described(material), i, json.described()),
+                   fmt::format("it has no {}: textures are looked up at (0, 0)", name));
+    };
+    if (set >= 0 && !uv) lacks(uvName);
     const auto draco = primitive.extension("KHR_draco_mesh_compression");
     const Program* program = materials_.program(material);
     const ProgramVertices wanted =
         program && !draco ? programVertices(primitive, *attributes, *program) : ProgramVertices{};
+    if (program && !draco && !primitive.extension("WARDMIS_scene"))  // whose exporter names what a mesh lacks
+      for (const ProgramAttribute& a : program->attributes)
+        if (const std::string name = a.name.empty() ? "TEXCOORD_0" : a.name;
+            a.kind == ProgramAttribute::Kind::kUvs && !attributes->find(name))
+          lacks(name);
     const size_t vertices = draco ? 0 : accessors_.count(*position);
     attributes->forEachMember([&](std::string_view key, const Json& use) {
       if (!draco && key != "POSITION") accessors_.checkAttribute(use, key, vertices);

@@ -246,7 +246,20 @@ TEST(Foreign, OneSetOfTextureCoordinatesIsReadAndTheOtherNamed) {
   primitive(b)["attributes"].erase("TEXCOORD_1");
   s = read(b);
   EXPECT_TRUE(s.meshes.at(0).parts[0].uvs.empty());
-  EXPECT_TRUE(listHas(s.leftOut, "mesh 'Quad': it has no TEXCOORD_1"));
+  EXPECT_TRUE(listHas(s.leftOut,
+                      "of material 'Wall' on primitive 0 of mesh 'Quad': it has no TEXCOORD_1: textures are "
+                      "looked up at (0, 0)"));
+}
+
+TEST(Foreign, SetsThatAProgramAsksForInVainAreNamed) {
+  for (const char* set : {"", "TEXCOORD_3"}) {
+    GlbBuilder b = textured(ward(
+        {{"program", {{"operations", json::array({{{"op", "uv"}, {"set", set}}})}}}, {"emission", {{"result", 0}}}}));
+    primitive(b)["attributes"].erase("TEXCOORD_0");
+    const Scene s = read(b);
+    EXPECT_TRUE(listHas(s.leftOut, "of material 'Plate' on primitive 0 of mesh 'Quad': it has no " +
+                                       std::string(*set ? set : "TEXCOORD_0")));
+  }
 }
 
 TEST(Foreign, WhatTheMaterialIsNotGivenIsNamed) {
