@@ -22,6 +22,8 @@ N = 32
 STEPS = np.arange(N) / (N - 1)
 ROUGHNESS = np.maximum(STEPS, 1e-3)  # Cycles' least
 SIZE, SAMPLES = 4, 512  # pixels of a strip each way, paths of each
+# what is measured, three channels at a time: the mean over the lobe of products of these coordinates
+PRODUCTS: tuple[list[tuple[str, ...]], ...] = ([(), ("Z",), ("Y",)], [("Z", "Z"), ("Y", "Y"), ("Y", "Z")])
 LEAST = 1e-5  # Cycles makes no lobe of less albedo
 
 Moments = np.ndarray  # (..., 6): albedo, and of the lobe z, x, z^2, x^2, xz; x is the view's side
@@ -108,8 +110,8 @@ class Scene:
     def measure(self, cosines: np.ndarray) -> Moments:
         """Of each strip (rows: cosines)."""
         with tempfile.TemporaryDirectory() as folder:
-            sums = []
-            for products in ([(), ("Z",), ("Y",)], [("Z", "Z"), ("Y", "Y"), ("Y", "Z")]):
+            sums: list[list[np.ndarray]] = []
+            for products in PRODUCTS:
                 self.light(products)
                 sums.append([self.picture(float(mu), f"{folder}/{len(sums)}_{i}.exr") for i, mu in enumerate(cosines)])
         out = np.concatenate(sums, axis=2)
