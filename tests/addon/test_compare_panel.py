@@ -22,7 +22,7 @@ from comparison_support import SMALL, ComparisonTest
 from support import ADDON
 from wardmis import compat, rendering, scripting, second_blender, temporary, warnings
 from wardmis import layout as panel_layout
-from wardmis.comparison import colours, cycles, estimate, images, job, operators, panels, plot, properties
+from wardmis.comparison import colours, cycles, estimate, folders, images, job, operators, panels, plot, properties
 from wardmis.comparison.command_line import progress_text
 from wardmis.comparison.estimate import duration
 from wardmis.comparison.overrides import overridden
@@ -718,6 +718,26 @@ class Sidebar(PanelTest):
             "wardmis.compare",
         ):
             self.assertIn(name, choices[0])
+
+    def test_says_what_was_not_finished(self):
+        def says() -> bool:
+            folders._seen.clear()
+            job.forget()  # as another Blender
+            labels = " ".join(label.strip() for label in self.draw(panels.WARDMIS_IMAGE_PT_compare).labels)
+            return panels.UNFINISHED in labels
+
+        self.assertFalse(says())
+        folder = self.compare()
+        self.assertFalse(says())
+        (folder / "report.json").unlink()  # as a Blender that was killed leaves it
+        self.assertTrue(says())
+        self.settings.seeds = 3
+        self.assertTrue(says())
+        self.settings.samples = 64
+        self.assertFalse(says())
+        self.settings.samples = 2
+        self.assertEqual(self.compare(), folder)
+        self.assertFalse(says())
 
     def test_table_fits_and_its_signs_are_explained(self):
         self.assertFalse(panels.WARDMIS_IMAGE_PT_results.poll(bpy.context))

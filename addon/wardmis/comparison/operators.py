@@ -3,13 +3,9 @@
 
 from __future__ import annotations
 
-import dataclasses
 import functools
-import hashlib
 import math
 import os
-import re
-import tempfile
 import types
 from pathlib import Path
 from typing import Any
@@ -27,10 +23,10 @@ from . import child, editors, images, job, plot, properties
 from .converge import OWN, Outcome, Study, arguments, explain_half
 from .cycles import require_cycles
 from .estimate import Estimate, Speeds, estimate
+from .folders import folder_of, home, is_unfinished
 from .overrides import overridden
 from .run import CYCLES_FOLDER, SCENE_NAME, check_study, divide, forget, prepare, scene_title, threads_of
-from .same_scene import same_but_for_rounding, settle
-from .scene_file import read_scene_file
+from .same_scene import settle
 
 KEY = "J"  # with Shift; alone it turns Blender's own render slots over
 
@@ -77,6 +73,11 @@ def estimate_of(scene: Any) -> Estimate:
     return estimate(study, max(1, round(width * height * share)), cycles_seeds, _speeds(study.title), threads)
 
 
+def unfinished(scene: Any) -> bool:
+    """Whether a comparison as the panel says it was begun and not finished, perhaps by a Blender that is no more."""
+    return is_unfinished(home(scene), study_of(scene), scene.wardmis_comparison, scene.wardmis)
+
+
 def _speeds(title: str) -> Speeds:
     """Of the last comparison of the scene, else of the last render."""
     report = properties.report()
@@ -84,16 +85,6 @@ def _speeds(title: str) -> Speeds:
         own, cycles = report.speeds()
         return Speeds(own, cycles)
     return Speeds(rendering.speed())
-
-
-def home(scene: Any) -> Path:
-    """The folder in which comparisons get theirs."""
-    chosen = scene.wardmis_comparison.folder
-    if chosen and (bpy.data.filepath or not chosen.startswith("//")):
-        return Path(bpy.path.abspath(chosen))
-    if bpy.data.filepath:
-        return Path(bpy.data.filepath).with_suffix("").with_name(f"{Path(bpy.data.filepath).stem} comparisons")
-    return Path(tempfile.gettempdir()) / "wardmis comparisons"  # not Blender's own, which goes when it ends
 
 
 def begin(context: Any) -> job.Job:
@@ -152,7 +143,7 @@ class _Asked:
         """Once the scene is exported into the staging folder, which decides where the results go."""
         settings, study = self.settings, self.study
         exported = self.staging / SCENE_NAME
-        folder = _folder(self.home, study, settings, self.render_settings, exported)
+        folder = folder_of(self.home, study, settings, self.render_settings, exported)
         new = not folder.exists()
         try:
             folder.mkdir(parents=True, exist_ok=True)
@@ -187,19 +178,6 @@ class _Asked:
 def _as_it_is(group: Any) -> Any:
     """The values of a property group, which do not change with it."""
     return types.SimpleNamespace(**{p.identifier: getattr(group, p.identifier) for p in group.bl_rna.properties})
-
-
-def _folder(place: Path, study: Study, settings: Any, render_settings: Any, exported: Path) -> Path:
-    """The same comparison goes on in the same folder, also with more seeds; another one begins its own."""
-    what = arguments(dataclasses.replace(study, seeds=0), render_settings, Outcome(Path(), Path()))
-    what.append(f"{settings.use_cycles} {settings.cycles_as_is}")
-    title = re.sub(r"[^\w.-]+", "_", study.title)  # of any letters, but no signs that a folder's name cannot have
-    name = f"{title}-{hashlib.sha256(chr(0).join(what).encode()).hexdigest()[:8]}"
-    # the export's own hash would tell apart what is the same but for the last bits
-    for earlier in sorted(place.glob(f"{name}-*")):
-        if same_but_for_rounding(exported, earlier / SCENE_NAME):
-            return earlier
-    return place / f"{name}-{read_scene_file(exported).sha256[:8]}"
 
 
 def _finished(done: job.Job) -> None:

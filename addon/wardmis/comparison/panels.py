@@ -14,6 +14,7 @@ from ..properties import ALLOCATIONS
 from . import job, operators, properties
 from .estimate import duration
 
+UNFINISHED = "Begun before, and not finished: Compare goes on from there, if the scene is still the same"
 VERDICT_ICONS = {
     "faster": "CHECKMARK",
     "slower": "X",
@@ -92,6 +93,8 @@ def draw_progress(layout: Any, scene: Any) -> None:
         draw_text(layout, current.failure, "ERROR")
     elif current is not None and current.stopping:
         draw_text(layout, current.text, "INFO")
+    elif text and operators.unfinished(scene):
+        draw_text(layout, UNFINISHED, "INFO")
 
 
 def draw_results(layout: Any) -> None:
