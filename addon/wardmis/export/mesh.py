@@ -16,6 +16,7 @@ from .. import compat
 from .attribute import generated, read_attribute
 from .context import ExportContext, ExportError
 from .model import MaterialData, MeshData, PrimitiveData
+from .tangent import shared_tangents
 
 
 @dataclass
@@ -101,6 +102,11 @@ def gather_geometry(mesh: Any, wanted: Wanted, context: ExportContext) -> Geomet
         if undeformed is not None:
             geometry.attributes["GENERATED"] = undeformed if corner_of is None else undeformed.take(corner_of, axis=0)
     _check_directions(geometry, mesh, context)
+    context.check_cancelled()
+    for name in sorted(wanted.tangents):
+        uvs = uv_sets.get(name)
+        if uvs is not None and np.isfinite(uvs).all():
+            geometry.tangents[name] = shared_tangents(geometry.positions, geometry.normals, uvs, corners)
     return geometry
 
 
@@ -144,4 +150,4 @@ def assemble(name: str, geometry: Geometry, materials: tuple[int, ...]) -> MeshD
 def transformed(mesh: MeshData, linear: np.ndarray) -> MeshData:
     """The mesh in the shape that a 3x3 matrix without an inverse gives it: a flat one, with the normals of its faces."""
     positions = (mesh.positions.astype(np.float64) @ linear.T).astype(np.float32)
-    return replace(mesh, positions=positions, normals=None)
+    return replace(mesh, positions=positions, normals=None, tangents={})
