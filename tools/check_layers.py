@@ -24,7 +24,7 @@ LIBRARIES |= {library: ["native/codecs/"] for library in ("draco", "meshoptimize
 
 # Python: Blender's modules, and where they may be imported.
 BLENDER = {"bpy", "bpy_extras", "mathutils", "gpu", "bl_ui", "nodeitems_utils"}
-WITH_BLENDER = ("addon/", "tests/addon/", "tests/cycles/", "tests/golden/", "blend/")
+WITH_BLENDER = ("addon/", "tests/addon/", "tests/cycles/", "tests/golden/", "blend/", "tools/fibre_table.py")
 # These parts of the add-on are plain data: they must work, and be tested, without Blender.
 WITHOUT_BLENDER = tuple(f"addon/wardmis/export/{name}.py" for name in ("model", "glb", "target"))
 

@@ -200,7 +200,7 @@ def world_of(view_layer: Any, scene: Any) -> Any:
 
 
 def world_is_seen_by(world: Any, ray: str) -> bool:
-    """Whether a "camera", "diffuse" or "glossy" ray sees it; it is Cycles' setting, and gone where that add-on is off."""
+    """Whether a "camera", "diffuse", "glossy" or "transmission" ray sees it; it is Cycles' setting, and gone where that add-on is off."""
     settings: Any = getattr(world, "cycles_visibility", None)
     return settings is None or bool(getattr(settings, ray))
 

@@ -45,7 +45,7 @@ class WARDMIS_OBJECT_PT_ray_visibility(Panel, bpy.types.Panel):
 
     def draw(self, context: Any) -> None:
         obj, column = context.object, self._column()
-        for kind in ("camera", "diffuse", "glossy", "shadow"):
+        for kind in ("camera", "diffuse", "glossy", "transmission", "shadow"):
             if kind != "shadow" or obj.type != "LIGHT":
                 column.prop(obj, f"visible_{kind}", text=kind.title())
 

@@ -22,7 +22,7 @@ from . import compat, light_paths, rendering, sharing, temporary, warnings
 from .export import ExportCancelled, ExportError, export_depsgraph
 from .export.camera import border, full_resolution
 from .exr import read_header, read_pass
-from .passes import not_available, passes_option, register_passes
+from .passes import not_available, passes_of, passes_option, register_passes, tell
 from .preferences import renderer_path
 from .process import Renderer, RendererError
 from .seed import seed_of
@@ -108,6 +108,7 @@ class _Render:
         self.width, self.height = x1 - x0, y1 - y0
         self.result: Any = None
         self.started = False
+        self.told: set[str] = set()  # the names of the passes that the renderer writes
         self.statistics: dict[str, Any] = {}
 
     def run(self) -> None:
@@ -250,6 +251,7 @@ class _Render:
             self.scene_path.unlink(missing_ok=True)  # it has been read: should Blender be killed, no file stays behind
             for note in event.get("notes", []):
                 self._warn(note)
+            self._add_passes(event.get("passes", []))
         elif kind == "progress":
             self._show_progress(event)
         elif kind == "preview":
@@ -260,6 +262,15 @@ class _Render:
             self.statistics = event.get("stats", {})
             if event.get("samples") and event.get("seconds"):
                 rendering.note_speed(float(event["samples"]) * self.width * self.height, float(event["seconds"]))
+
+    def _add_passes(self, passes: list[dict[str, Any]]) -> None:
+        """Those that the scene has beside the registered ones: a technique for each lobe of its surfaces."""
+        registered = {p.name for p in passes_of(self.scene, self.layer)}
+        self.told = {p["name"] for p in passes}
+        for p in passes:
+            if p["name"] not in registered:
+                self.engine.add_pass(p["name"], len(p["channels"]), p["channels"], layer=self.layer.name)
+        tell(self.scene, self.layer, [p["name"] for p in passes])
 
     def _show_progress(self, event: dict[str, Any]) -> None:
         self.engine.update_progress(event["fraction"])
@@ -284,7 +295,7 @@ class _Render:
         """RuntimeError where the image is not of the result's size."""
         passes = self.result.layers[0].passes
         longest = max(len(f"{self.layer.name}.{p.name}.X".encode()) for p in passes)
-        if longest <= compat.LONGEST_CHANNEL:
+        if longest <= compat.LONGEST_CHANNEL and all(p.name in self.told for p in passes):
             self.result.load_from_file(str(path))
             return
         there = {name.split(".")[-2] for name, _ in read_header(path).channels()}

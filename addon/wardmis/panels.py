@@ -116,7 +116,7 @@ class WARDMIS_RENDER_PT_light_paths(RenderPanel, bpy.types.Panel):
         follows = settings.integrator == "path"
         _row(column, follows).prop(settings, "bounces")
         if settings.bounces == "own":
-            for limit in ("max_depth", "max_diffuse", "max_glossy"):
+            for limit in ("max_depth", "max_diffuse", "max_glossy", "max_transmission", "max_transparent"):
                 _row(column, follows).prop(settings, limit)
         limits, cycles = light_paths.in_force(context.scene), light_paths.of_cycles(context.scene)
         if follows and settings.bounces == "cycles":

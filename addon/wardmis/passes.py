@@ -2,7 +2,8 @@
 """The passes of a render, as docs/command.md names them: one table for the panel, the compositor, the command and the file.
 
 A pass is made where the view layer asks for it. Those that Cycles has, too, are asked for by Blender's own settings, the others by
-`view_layer.wardmis`. Blender complains of a registered pass that a file lacks, so that a preview has all of them, too.
+`view_layer.wardmis`. Blender complains of a registered pass that a file lacks, so that a preview has all of them, too. There are as
+many allocation passes as the scene has techniques, which the renderer knows: until it has told them, there are three.
 """
 
 from __future__ import annotations
@@ -29,9 +30,6 @@ PASSES = (
     Pass("Normal", "XYZ", "VECTOR", "normal"),
     Pass("Albedo", "RGB", "COLOR", "albedo"),
     Pass("Variance", "RGB", "COLOR", "variance"),
-    Pass("Allocation Lobe", "X", "VALUE", "allocation"),
-    Pass("Allocation Cosine", "X", "VALUE", "allocation"),
-    Pass("Allocation Light", "X", "VALUE", "allocation"),
     *(
         Pass(compat.PASS_NAMES[group], channels, kind, group)
         for group, channels, kind in (
@@ -44,6 +42,8 @@ PASSES = (
         )
     ),
 )
+ALLOCATION = "Allocation"
+TECHNIQUES = ("Allocation Lobe", "Allocation Cosine", "Allocation Light")
 # Blender's own that this engine has, and those that are no pass of a render engine or change none
 BLENDERS = {
     "use_pass_z": "depth",
@@ -80,18 +80,43 @@ class WARDMIS_PG_view_layer(bpy.types.PropertyGroup):
     )
     use_pass_allocation: BoolProperty(
         name="Allocation",
-        description="Deliver how the samples were shared at each pixel: one pass for each of lobe, cosine and light, "
-        "with its share from 0 to 1",
+        description="Deliver how the samples were shared at each pixel: one pass for each technique (the lobes of the "
+        "surfaces, cosine and light), with its share from 0 to 1",
         default=False,
         update=_changed,
     )
 
 
+# The allocation passes of a scene's view layer as the renderer told them last, both by name.
+_told: dict[tuple[str, str], tuple[str, ...]] = {}
+
+
+def tell(scene: Any, layer: Any, names: list[str]) -> None:
+    """The passes that a render of the layer has: the compositor's sockets follow as soon as Blender lets them."""
+    place, techniques = (scene.name, layer.name), tuple(n for n in names if n.startswith(ALLOCATION))
+    if techniques and techniques != _told.get(place, TECHNIQUES):
+        _told[place] = techniques
+        if not bpy.app.background:
+            bpy.app.timers.register(lambda: _update(*place))
+
+
+def _update(scene: str, layer: str) -> None:
+    layers = getattr(bpy.data.scenes.get(scene), "view_layers", {})
+    if layer in layers:
+        layers[layer].update_render_passes()
+
+
+def passes_of(scene: Any, layer: Any) -> list[Pass]:
+    """All that there are of the layer, whether it asks for them or not."""
+    techniques = _told.get((scene.name, layer.name), TECHNIQUES)
+    return [*PASSES, *(Pass(name, "X", "VALUE", "allocation") for name in techniques)]
+
+
 def wanted(layer: Any) -> list[str]:
-    """What `layer` asks for, as `--passes` calls it, in the order of PASSES."""
+    """What `layer` asks for, as `--passes` calls it, in the order of the passes."""
     asked = {"combined", *(group for flag, group in BLENDERS.items() if getattr(layer, flag))}
     asked |= {flag.removeprefix("use_pass_") for flag in _own_flags() if getattr(layer.wardmis, flag)}
-    return list(dict.fromkeys(p.group for p in PASSES if p.group in asked))
+    return [group for group in (*(p.group for p in PASSES), "allocation") if group in asked]
 
 
 def passes_option(layer: Any) -> str:
@@ -110,7 +135,7 @@ def not_available(layer: Any) -> Iterator[str]:
 
 def register_passes(engine: Any, scene: Any, layer: Any) -> None:
     groups = wanted(layer)
-    for p in PASSES:
+    for p in passes_of(scene, layer):
         if p.group in groups:
             engine.register_pass(scene, layer, p.name, len(p.channels), p.channels, p.kind)
 

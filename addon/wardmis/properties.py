@@ -233,8 +233,25 @@ class WARDMIS_PG_scene(bpy.types.PropertyGroup):
     )
     max_glossy: IntProperty(
         name="Max Glossy",
-        description="Glossy bounces of a path, as in Cycles: how often it may go on from a reflection by a Ward lobe",
+        description="Glossy bounces of a path, as in Cycles: how often it may go on from a glossy reflection",
         default=light_paths.LONGEST,
+        min=0,
+        soft_max=64,
+        max=light_paths.LONGEST,
+    )
+    max_transmission: IntProperty(
+        name="Max Transmission",
+        description="Transmission bounces of a path, as in Cycles: how often it may go on through glass and other "
+        "surfaces that scatter light to behind",
+        default=light_paths.LONGEST,
+        min=0,
+        soft_max=64,
+        max=light_paths.LONGEST,
+    )
+    max_transparent: IntProperty(
+        name="Max Transparent",
+        description="How many transparent surfaces a path may pass straight, as in Cycles. The next one is opaque",
+        default=light_paths.TRANSPARENT,
         min=0,
         soft_max=64,
         max=light_paths.LONGEST,

@@ -25,8 +25,10 @@ inline float tableRoughness(const Lobe& l) { return std::sqrt(std::sqrt(l.ax * l
 // Hands on a lobe that gives something; rough ones below Cycles' threshold as perfectly smooth.
 template <class Add>
 inline void addLobe(int version, Lobe l, Add&& add) {
-  if (!(std::abs(l.weight.x + l.weight.y + l.weight.z) >= 3 * kLeastWeight)) return;
+  const auto gives = [](Rgb w) { return std::abs(w.x + w.y + w.z) >= 3 * kLeastWeight; };
+  if (!gives(l.weight) && !(isGlass(l.kind) && gives(l.through))) return;
   const bool smooth = l.ax * l.ay <= (version == 3 ? 1e-7f : 2e-10f);
+  const bool straight = smooth || std::abs(l.eta - 1) < 1e-4f;
   switch (l.kind) {
     case LobeKind::kGgx:
     case LobeKind::kBeckmann:
@@ -35,7 +37,16 @@ inline void addLobe(int version, Lobe l, Add&& add) {
       break;
     case LobeKind::kGgxRefraction:
     case LobeKind::kBeckmannRefraction:
-      if (smooth || std::abs(l.eta - 1) < 1e-4f) l.kind = LobeKind::kSharpRefraction;
+      if (straight) l.kind = LobeKind::kSharpRefraction;
+      break;
+    case LobeKind::kGgxGlass:
+    case LobeKind::kBeckmannGlass:
+      if (!straight) break;
+      // two directions are two techniques: what Fresnel makes of them is known before one is drawn
+      l.kind = LobeKind::kMirror;
+      if (gives(l.weight)) add(l);
+      l.kind = LobeKind::kSharpRefraction, l.weight = l.through;
+      if (!gives(l.weight)) return;
       break;
     case LobeKind::kThinTransmission:
       if (smooth) l.kind = LobeKind::kTransparent;
@@ -101,19 +112,18 @@ inline void addGlossy(int version, Glossy distribution, Rgb weight, Rgb color, f
   addLobe(version, l, add);
 }
 
-// The two halves of glass. fresnel and f0 as in Lobe; tints multiply what is reflected and what is transmitted.
+// Glass. fresnel and f0 as in Lobe; tints multiply what is reflected and what is transmitted.
 struct GlassLook {
-  LobeKind reflection = LobeKind::kGgx, refraction = LobeKind::kGgxRefraction;
+  LobeKind kind = LobeKind::kGgxGlass;
   Masking masking = Masking::kCorrelated;
   Fresnel fresnel = Fresnel::kBlended;
   Rgb f0, reflectionTint, transmissionTint;
 };
 template <class Add>
-inline void addGlassLobes(int version, const GlassLook& look, Rgb weight, float alpha, float eta, Add&& add) {
-  Lobe l = roughLobe(version, look.reflection, weight * look.reflectionTint, alpha, alpha);
+inline void addGlassLobe(int version, const GlassLook& look, Rgb weight, float alpha, float eta, Add&& add) {
+  Lobe l = roughLobe(version, look.kind, weight * look.reflectionTint, alpha, alpha);
   l.masking = look.masking, l.fresnel = look.fresnel, l.f0 = look.f0, l.eta = eta;
-  addLobe(version, l, add);
-  l.kind = look.refraction, l.weight = weight * look.transmissionTint;
+  l.through = weight * look.transmissionTint;
   addLobe(version, l, add);
 }
 
@@ -122,8 +132,7 @@ template <class Add>
 inline void addGlass(int version, Glossy distribution, Rgb weight, Rgb color, float alpha, float eta, float cosThetaO,
                      Add&& add) {
   GlassLook look{.f0 = gray(fresnelNormal(eta)), .reflectionTint = color, .transmissionTint = color};
-  if (distribution == Glossy::kBeckmann)
-    look.reflection = LobeKind::kBeckmann, look.refraction = LobeKind::kBeckmannRefraction;
+  if (distribution == Glossy::kBeckmann) look.kind = LobeKind::kBeckmannGlass;
   if (distribution == Glossy::kMultiGgx) {
     if (version == 3) look.fresnel = Fresnel::kDielectric;
     const float roughness = std::sqrt(alpha);
@@ -133,7 +142,7 @@ inline void addGlass(int version, Glossy distribution, Rgb weight, Rgb color, fl
     look.masking = Masking::kSeparable, look.fresnel = Fresnel::kNone;
     look.reflectionTint = color * f, look.transmissionTint = color * std::max(1e-4f, 1 - f);
   }
-  addGlassLobes(version, look, weight, alpha, eta, add);
+  addGlassLobe(version, look, weight, alpha, eta, add);
 }
 
 template <class Add>

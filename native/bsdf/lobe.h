@@ -2,13 +2,15 @@
 // The closed set of lobes that surfaces are made of: a lobe as plain data, and what can be asked of it, over any number
 // type. Local frame of the lobe, z its normal; wo above it. Densities per solid angle of wi.
 //   evaluate(lobe, wi, wo)   f cos(theta_i) with the lobe's weight and colour, and the density of sample()
-//   sample(lobe, wo, u)      a direction; where evaluate() is zero there, its contribution is zero, and it counts
+//   sample(lobe, wo, u, v)   a direction; where evaluate() is zero there, its contribution is zero, and it counts.
+//                            v: of glass alone, chooses between what a facet reflects and what it lets pass
 //   logPdf(lobe, wi, wo)     ln of the density, also where that underflows
 //   weight(lobe, wi, wo)     f cos / pdf at a sampled direction, without cancellation
 //   isDelta(kind)            one direction alone: evaluate() is zero, weight() is f cos / pdf as ever
-//   transmits(kind)          wi lies below the surface
-// A lobe either reflects or transmits: glass is two of them.
+//   reflects(kind), transmits(kind)   wi lies above the surface, below it; of glass both
 #pragma once
+
+#include <string_view>
 
 #include "bsdf/ashikhmin.h"
 #include "bsdf/dielectric.h"
@@ -39,11 +41,13 @@ enum class LobeKind : uint8_t {
   kGgxRefraction,  // as kGgx; facets let pass what fresnel does not reflect
   kBeckmannRefraction,
   kThinTransmission,  // kGgx, mirrored to below
-  kMirror,            // facets by fresnel
+  kGgxGlass,          // both: facets reflect by fresnel and let pass the rest, tinted by `through` in place of weight
+  kBeckmannGlass,
+  kMirror,  // facets by fresnel
   kSharpRefraction,
   kTransparent,
 };
-inline constexpr int kLobeKinds = 22;
+inline constexpr int kLobeKinds = 24;
 
 // Reflectance of a facet at a cosine.
 enum class Fresnel : uint8_t {
@@ -59,12 +63,19 @@ struct Lobe {
   Fresnel fresnel = Fresnel::kNone;
   Masking masking = Masking::kCorrelated;
   uint8_t frame = 0;  // which normal and tangent, for whoever has several
-  Rgb weight{1, 1, 1};
+  Rgb weight{1, 1, 1}, through{1, 1, 1};
   float ax = 1, ay = 1;
   float eta = 1;  // of the side below over that above
   Rgb f0{1, 1, 1}, edge{0, 0, 0};
   float a = 0, b = 0;
 };
+
+constexpr LobeKind wardKind(WardVariant v) {
+  return static_cast<LobeKind>(static_cast<int>(LobeKind::kWard) + static_cast<int>(v));
+}
+constexpr WardVariant wardVariant(LobeKind k) {
+  return static_cast<WardVariant>(static_cast<int>(k) - static_cast<int>(LobeKind::kWard));
+}
 
 template <class T>
 struct LobeValue {
@@ -73,9 +84,29 @@ struct LobeValue {
 };
 
 constexpr bool isDelta(LobeKind kind) { return kind >= LobeKind::kMirror; }
+constexpr bool isGlass(LobeKind kind) { return kind == LobeKind::kGgxGlass || kind == LobeKind::kBeckmannGlass; }
 constexpr bool transmits(LobeKind kind) {
   return kind == LobeKind::kTranslucent || kind == LobeKind::kRoughTranslucent ||
          (kind >= LobeKind::kGgxRefraction && kind != LobeKind::kMirror);
+}
+constexpr bool reflects(LobeKind kind) { return !transmits(kind) || isGlass(kind); }
+// Whether its rays are diffuse ones to Cycles; others are glossy.
+constexpr bool isMatte(LobeKind k) {
+  return k <= LobeKind::kRoughTranslucent || (k >= LobeKind::kVelvet && k <= LobeKind::kFibres);
+}
+
+// What techniques are called by.
+enum class LobeClass : uint8_t { kGlossy, kGlass, kRefraction, kTranslucent, kSheen, kDiffuse };
+inline constexpr size_t kLobeClasses = 6;
+constexpr std::string_view name(LobeClass c) {
+  constexpr std::string_view names[] = {"glossy", "glass", "refraction", "translucent", "sheen", "diffuse"};
+  return names[static_cast<size_t>(c)];
+}
+constexpr LobeClass classOf(LobeKind k) {
+  if (isGlass(k)) return LobeClass::kGlass;
+  if (transmits(k)) return isMatte(k) ? LobeClass::kTranslucent : LobeClass::kRefraction;
+  if (k == LobeKind::kFibres) return LobeClass::kSheen;
+  return isMatte(k) ? LobeClass::kDiffuse : LobeClass::kGlossy;
 }
 
 template <class T>
@@ -129,6 +160,63 @@ inline Vec3<T> refractedColor(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
   const Vec3<T> h = scaled(refractionHalf(wi, wo, T(l.eta)));
   return rgb<T>(l.weight) * transmittance(l, std::min(dot(wo, h) / length(h), T(1)));
 }
+// What glass does to light at a facet: c = wo.m, reflect: the probability that sample() takes its reflection.
+template <class T>
+struct GlassFacet {
+  Vec3<T> reflected, passed;
+  T reflect;
+
+  // What goes to one side, over the probability of that.
+  Vec3<T> over(bool above) const {
+    const T chosen = above ? reflect : T(1) - reflect;
+    return chosen > T(0) ? (above ? reflected : passed) * (T(1) / chosen) : Vec3<T>{};
+  }
+};
+template <class T>
+inline GlassFacet<T> glassFacet(const Lobe& l, T c) {
+  const auto strength = [](Vec3<T> v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
+  GlassFacet<T> f{rgb<T>(l.weight) * reflectance(l, c), rgb<T>(l.through) * transmittance(l, c), T(1)};
+  const T r = strength(f.reflected), t = strength(f.passed);
+  if (t > T(0)) f.reflect = r / (r + t);
+  return f;
+}
+template <class T>
+inline GlassFacet<T> glassFacet(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
+  if (wi.z > T(0)) return glassFacet(l, std::min(T(0.5) * length(wi + wo), T(1)));
+  const Vec3<T> h = scaled(refractionHalf(wi, wo, T(l.eta)));
+  return glassFacet(l, std::min(dot(wo, h) / length(h), T(1)));
+}
+template <Distribution K, class T>
+inline LobeValue<T> glassEvaluate(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
+  const T ax = T(l.ax), ay = T(l.ay);
+  const bool above = wi.z > T(0);
+  const MicrofacetValue<T> v = above ? microfacetEvaluate<K>(l.masking, wi, wo, ax, ay)
+                                     : refractionEvaluate<K>(l.masking, wi, wo, ax, ay, T(l.eta));
+  if (!(v.pdf > T(0))) return {};
+  const GlassFacet<T> f = glassFacet(l, wi, wo);
+  return above ? LobeValue<T>{f.reflected * v.fCos, v.pdf * f.reflect}
+               : LobeValue<T>{f.passed * v.fCos, v.pdf * (T(1) - f.reflect)};
+}
+template <Distribution K, class T>
+inline Vec3<T> glassWeight(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
+  const T ax = T(l.ax), ay = T(l.ay);
+  const bool above = wi.z > T(0);
+  return glassFacet(l, wi, wo).over(above) *
+         (above ? microfacetWeight<K>(l.masking, wi, wo, ax, ay) : refractionWeight<K>(l.masking, wi, wo, ax, ay));
+}
+// What leaves on the wrong side of the mean surface goes along the horizon, where the lobe is zero.
+template <class T>
+inline Vec3<T> glassSample(const Lobe& l, Vec3<T> wo, Vec3<T> m, T v) {
+  const Vec3<T> lost{T(1), T(0), T(0)};
+  const Vec3<T> n = scaled(m);
+  const T c = std::min(dot(wo, n) / length(n), T(1));
+  Vec3<T> wi = lost;
+  if (v < glassFacet(l, c).reflect) {
+    wi = mirrored(wo, m);
+    return wi.z > T(0) ? wi : lost;
+  }
+  return refracted(wo, m, T(l.eta), wi) && wi.z < T(0) ? wi : lost;
+}
 template <class T>
 inline LobeValue<T> colored(Vec3<T> color, MicrofacetValue<T> v) {
   return {color * v.fCos, v.pdf};
@@ -156,9 +244,6 @@ inline Vec3<T> diffuseF(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
 }
 constexpr bool isDiffuse(LobeKind k) {
   return k <= LobeKind::kRoughTranslucent || k == LobeKind::kVelvet || k == LobeKind::kSchlickSheen;
-}
-constexpr WardVariant wardVariant(LobeKind k) {
-  return static_cast<WardVariant>(static_cast<int>(k) - static_cast<int>(LobeKind::kWard));
 }
 // Lobes that are mirrored to below are asked with wi turned over.
 constexpr bool isMirrored(LobeKind k) {
@@ -200,6 +285,10 @@ LobeValue<T> evaluate(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
     case LobeKind::kBeckmannRefraction:
       return colored(refractedColor(l, wi, wo),
                      refractionEvaluate<Distribution::kBeckmann>(l.masking, wi, wo, ax, ay, T(l.eta)));
+    case LobeKind::kGgxGlass:
+      return glassEvaluate<Distribution::kGgx>(l, wi, wo);
+    case LobeKind::kBeckmannGlass:
+      return glassEvaluate<Distribution::kBeckmann>(l, wi, wo);
     case LobeKind::kAshikhminShirley: {
       const T pdf = ashikhminPdf(wi, wo, ax, ay);
       return {rgb<T>(l.weight) * (pdf * ashikhminWeight(wi, wo)), pdf};
@@ -216,7 +305,7 @@ LobeValue<T> evaluate(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
 }
 
 template <class T>
-Vec3<T> sample(const Lobe& l, Vec3<T> wo, Vec2<T> u) {
+Vec3<T> sample(const Lobe& l, Vec3<T> wo, Vec2<T> u, T v) {
   const T ax = T(l.ax), ay = T(l.ay);
   switch (l.kind) {
     case LobeKind::kWard:
@@ -235,6 +324,10 @@ Vec3<T> sample(const Lobe& l, Vec3<T> wo, Vec2<T> u) {
       return refractionSample<Distribution::kGgx>(wo, ax, ay, T(l.eta), u);
     case LobeKind::kBeckmannRefraction:
       return refractionSample<Distribution::kBeckmann>(wo, ax, ay, T(l.eta), u);
+    case LobeKind::kGgxGlass:
+      return detail::glassSample(l, wo, sampleNormal<Distribution::kGgx>(wo, ax, ay, u), v);
+    case LobeKind::kBeckmannGlass:
+      return detail::glassSample(l, wo, sampleNormal<Distribution::kBeckmann>(wo, ax, ay, u), v);
     case LobeKind::kAshikhminShirley:
       return ashikhminSample(wo, ax, ay, u);
     case LobeKind::kClearcoat:
@@ -286,7 +379,7 @@ Vec3<T> weight(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
   using namespace detail;
   const T ax = T(l.ax), ay = T(l.ay);
   const Vec3<T> white = rgb<T>(l.weight);
-  if (!(wo.z > T(0)) || (wi.z < T(0)) != transmits(l.kind)) return {};
+  if (!(wo.z > T(0)) || !(wi.z < T(0) ? transmits(l.kind) : reflects(l.kind))) return {};
   if (isMirrored(l.kind)) wi = flipped(wi);
   if (isDiffuse(l.kind)) return wi.z > T(0) ? diffuseF(l, wi, wo) * kPi<T> : Vec3<T>{};
   switch (l.kind) {
@@ -306,6 +399,10 @@ Vec3<T> weight(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
       return refractedColor(l, wi, wo) * refractionWeight<Distribution::kGgx>(l.masking, wi, wo, ax, ay);
     case LobeKind::kBeckmannRefraction:
       return refractedColor(l, wi, wo) * refractionWeight<Distribution::kBeckmann>(l.masking, wi, wo, ax, ay);
+    case LobeKind::kGgxGlass:
+      return glassWeight<Distribution::kGgx>(l, wi, wo);
+    case LobeKind::kBeckmannGlass:
+      return glassWeight<Distribution::kBeckmann>(l, wi, wo);
     case LobeKind::kAshikhminShirley:
       return white * ashikhminWeight(wi, wo);
     case LobeKind::kClearcoat:

@@ -109,7 +109,7 @@ inline void addTransmission(const Principled& p, Rgb weight, float ior, float co
     const Rgb fss = isBlack(tint) ? blendedMean(look.f0, eta) : tint;
     weight *= compensate(glassAlbedo(rough, cosThetaO, eta), fss).factor();
   }
-  addGlassLobes(p.version, look, weight, rough * rough, eta, add);
+  addGlassLobe(p.version, look, weight, rough * rough, eta, add);
 }
 
 }  // namespace detail

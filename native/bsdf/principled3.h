@@ -23,6 +23,9 @@ inline Rgb hueOf(Rgb color, float luminance, float tint) {
   return gray(1 - tint) + (luminance > 0 ? color * (1 / luminance) : gray(1)) * tint;
 }
 
+// Glass as rough as that gives back what is reflected more than once, and is one lobe.
+inline constexpr float kLeastCompensated3 = 5e-2f;
+
 namespace detail {
 
 template <class Add>
@@ -46,12 +49,12 @@ inline void addGlass3(const Principled3& p, Rgb weight, float cosThetaO, Add&& a
   const float eta = p.backfacing ? 1 / std::max(p.ior, 1e-5f) : std::max(p.ior, 1e-5f),
               alpha = p.roughness * p.roughness;
   const Rgb tint = p.baseColor * p.specularTint + gray(1 - p.specularTint);
-  if (p.multiscatter && p.roughness > 5e-2f) {
+  if (p.multiscatter && p.roughness > kLeastCompensated3) {
     const Rgb base = clampedTo1(p.baseColor);
     const GlassLook look{
         .fresnel = Fresnel::kTinted, .f0 = clampedTo1(tint), .reflectionTint = gray(1), .transmissionTint = base};
-    addGlassLobes(3, look, weight * compensate(glassAlbedo(p.roughness, cosThetaO, eta), base).factor(), alpha, eta,
-                  add);
+    addGlassLobe(3, look, weight * compensate(glassAlbedo(p.roughness, cosThetaO, eta), base).factor(), alpha, eta,
+                 add);
     return;
   }
   const float f = fresnelDielectric(cosThetaO, eta);

@@ -82,6 +82,14 @@ void SettingOptions::add(CLI::App& app) {
   app.add_option("--max-glossy", numbers_.maxGlossy, "glossy bounces of a path: those from samples of the lobe")
       ->check(CLI::Range(0, kLongestPath))
       ->capture_default_str();
+  app.add_option("--max-transmission", numbers_.maxTransmission,
+                 "transmission bounces of a path: those through glass and other surfaces that scatter light to behind")
+      ->check(CLI::Range(0, kLongestPath))
+      ->capture_default_str();
+  app.add_option("--max-transparent", numbers_.maxTransparent,
+                 "surfaces that a path passes straight, as transparent ones let it")
+      ->check(CLI::Range(0, kLongestPath))
+      ->capture_default_str();
   app.add_option("--kernel", kernel_, "general: with everything compiled in; the image is the same")
       ->check(CLI::IsMember({"auto", "general"}))
       ->capture_default_str();
@@ -153,6 +161,8 @@ nlohmann::json toJson(const RenderSettings& s) {
           {"max_depth", s.maxDepth},
           {"max_diffuse", s.maxDiffuse},
           {"max_glossy", s.maxGlossy},
+          {"max_transmission", s.maxTransmission},
+          {"max_transparent", s.maxTransparent},
           {"kernel", s.generalKernel ? "general" : "auto"}};
 }
 

@@ -216,8 +216,11 @@ std::vector<Affine> instanceMatrices(const Json& extension, Accessors& accessors
 }  // namespace
 
 uint8_t readVisibility(const Json& json) {
-  constexpr std::pair<std::string_view, Visibility> kKinds[] = {
-      {"camera", kSeenByCamera}, {"diffuse", kSeenByDiffuse}, {"glossy", kSeenByGlossy}, {"shadow", kCastsShadow}};
+  constexpr std::pair<std::string_view, Visibility> kKinds[] = {{"camera", kSeenByCamera},
+                                                                {"diffuse", kSeenByDiffuse},
+                                                                {"glossy", kSeenByGlossy},
+                                                                {"transmission", kSeenByTransmission},
+                                                                {"shadow", kCastsShadow}};
   const auto list = json.find("visibility");
   if (!list) return kSeenByAll;
   uint8_t bits = 0;

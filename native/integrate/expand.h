@@ -2,8 +2,6 @@
 // From a material's closures, their inputs resolved to numbers, to the lobes of one hit.
 #pragma once
 
-#include <functional>
-
 #include "bsdf/principled.h"
 #include "scene/closure.h"
 
@@ -37,7 +35,7 @@ void expand(const Closure& c, const ClosureValues& v, const std::array<float, 3>
       return addTransparent(version, weight, add);
     case ClosureType::kWard: {
       Lobe l;
-      l.kind = static_cast<LobeKind>(static_cast<int>(LobeKind::kWard) + static_cast<int>(c.variant));
+      l.kind = wardKind(c.variant);
       l.weight = weight, l.ax = std::clamp(s(0), 1e-6f, 10.0f), l.ay = std::clamp(s(1), 1e-6f, 10.0f);
       if (maxComponent(weight) > 0) add(l);
       return;

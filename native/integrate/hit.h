@@ -140,7 +140,6 @@ template <uint32_t N, class T, size_t K>
 Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const InteractionOf<SurfaceOf<N, K>>& x,
                 const HitPlan<K>& plan, Counts& counts, HitRecord<K>* record, Continuations<K>& continuations) {
   constexpr size_t kLobes = Techniques<K>::kLobes, kCosine = Techniques<K>::kCosine, kLight = Techniques<K>::kLight;
-  constexpr TechniqueMask kAll = Techniques<K>::kAll;
   constexpr bool kGeneral = (N & kNeedsLobes) != 0;  // any lobes, else one of Ward's
   constexpr bool kSpec = (N & kNeedsSpecular) != 0, kDiff = (N & kNeedsDiffuse) != 0, kPath = (N & kNeedsBounces) != 0;
   const SurfaceOf<N, K>& s = x.surface;
@@ -168,6 +167,11 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     return sampler.get2D(plan.pixelKey, dimension + Dimensions<K>::kTechnique + static_cast<uint32_t>(t),
                          indexOf(t, m));
   };
+  // what a lobe's sample chooses by, apart from its point: its dimension is the complement of that of the point
+  const auto choice = [&](size_t t, int m) {
+    return sampler.get1D(plan.pixelKey, ~(dimension + Dimensions<K>::kTechnique + static_cast<uint32_t>(t)),
+                         indexOf(t, m));
+  };
   std::array<int, K> end{};  // of each technique's samples in the batch
   int j = 0;
   for (size_t l = 0; l < kLobes; ++l) {
@@ -176,7 +180,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
         const Vec2f u = point(l, m);
         if constexpr (kGeneral) {
           LobeSample chosen;
-          batch.set(j, present[l] ? s.sample(l, wo, Vec2<T>{T(u.x), T(u.y)}, chosen) : Vec3<T>{});
+          batch.set(j, present[l] ? s.sample(l, wo, Vec2<T>{T(u.x), T(u.y)}, choice(l, m), chosen) : Vec3<T>{});
           from.set(j++, chosen);
         } else {
           batch.set(j++, s.sampleLobe(l, wo, Vec2<T>{T(u.x), T(u.y)}));
@@ -214,9 +218,12 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
   // One sample's share of an emitter's light, by MIS over the techniques of each integral. f: of each integrand, f cos.
   using Values = PerIntegrand<Rgb, K>;
   Rgb sum{0, 0, 0};
-  const auto seen = [&](Values f, uint8_t visibility) {
-    for (size_t l = 0; l < kLobes; ++l)
-      if ((visibility & kSeenByGlossy) == 0) f[l] = {0, 0, 0};
+  const auto seen = [&](Values f, uint8_t visibility, bool ahead) {
+    for (size_t l = 0; l < kLobes; ++l) {
+      uint8_t rays = kSeenByGlossy;
+      if constexpr (kGeneral) rays = s.rays(l, ahead);
+      if ((visibility & rays) == 0) f[l] = {0, 0, 0};
+    }
     if ((visibility & kSeenByDiffuse) == 0) f[kCosine] = {0, 0, 0};
     return f;
   };
@@ -229,9 +236,9 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
   const auto techniques = [&](size_t own, bool sharp) {
     return sharp ? maskOf(own) : techniquesFor<K>(plan.integrand, own);
   };
-  const auto add = [&](size_t t, bool sharp, const Values& all, Rgb radiance, const Fractions<K>& p, uint8_t visibility,
-                       int set) {
-    const Values f = seen(all, visibility);
+  const auto add = [&](size_t t, bool sharp, bool ahead, const Values& all, Rgb radiance, const Fractions<K>& p,
+                       uint8_t visibility, int set) {
+    const Values f = seen(all, visibility, ahead);
     if (!split) {
       const Rgb value = total(f) * radiance;
       const TechniqueMask used = techniques(t, sharp);
@@ -273,7 +280,8 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       const float side = dot(x.geometric, d);
       ahead = side > 0;
       // on the other side a lobe has no density of its own, whatever others have there: zero, and it counts
-      if (!(side != 0) || (t < kLobes && from[k].transmits == ahead) || (t == kCosine && !ahead)) continue;
+      if (!(side != 0) || (t == kCosine && !ahead)) continue;
+      if (t < kLobes && (from[k].lost || from[k].transmits == ahead)) continue;
       sharp = t < kLobes && s.delta(t);
       if (sharp) {
         f[t] = s.weight(from[k], wi, wo);
@@ -323,7 +331,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
         if constexpr (kGeneral) radiance *= left;
       }
       if (l.exclusive) {
-        Values each = seen(f, l.visibility);
+        Values each = seen(f, l.visibility, ahead);
         for (Rgb& value : each) value = value * radiance;
         sum += total(each) / (l.pdf * mixture.n[kLight]);
         // which of the lights is drawn is noise, too, and no other technique covers them
@@ -336,7 +344,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
         }
       } else {
         p[kLight] = l.pdf;
-        add(kLight, false, f, radiance, p, l.visibility, set);
+        add(kLight, false, ahead, f, radiance, p, l.visibility, set);
       }
       continue;
     }
@@ -350,7 +358,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     Ray ray;
     ray.origin = x.leave(d);
     ray.direction = d;
-    ray.kind = diffuse ? kSeenByDiffuse : kSeenByGlossy;
+    ray.kind = !ahead ? kSeenByTransmission : diffuse ? kSeenByDiffuse : kSeenByGlossy;
     ray.path =
         x.path.scattered(static_cast<uint16_t>((diffuse ? kDiffuseRay : kGlossyRay) | (sharp ? kSingularRay : 0) |
                                                (ahead ? kReflectionRay : kTransmissionRay)),
@@ -362,7 +370,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     const Hit hit = trace<N, K>(world, ray, key, seenThrough, [&](float tMax, bool escaped) {
       world.emitters.along(ray, tMax, escaped, static_cast<int>(plan.vertex), [&](const EmitterHit& e) {
         p[kLight] = e.pdf;
-        add(t, sharp, f, kGeneral ? e.radiance * seenThrough : e.radiance, p, e.visibility, set);
+        add(t, sharp, ahead, f, kGeneral ? e.radiance * seenThrough : e.radiance, p, e.visibility, set);
       });
     });
     if (!hit.valid()) continue;
@@ -372,7 +380,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       p[kLight] = world.emitters.trianglePdf(world.geometry.placements[hit.placement], hit, d, ray.path.time);
       Rgb radiance = interact<N, K>(world.scene, world.geometry, ray, hit).emission;
       if constexpr (kGeneral) radiance *= seenThrough;
-      add(t, sharp, f, radiance, p, world.geometry.placements[hit.placement].visibility, set);
+      add(t, sharp, ahead, f, radiance, p, world.geometry.placements[hit.placement].visibility, set);
     }
     if constexpr (kPath) {
       p[kLight] = 0;  // no light sample covers what is reflected there

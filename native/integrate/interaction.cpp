@@ -31,7 +31,7 @@ void resolve(const Scene& scene, const Material& m, const ShadedPoint& point, Ve
 
 template <size_t K>
 Framef resolveLobes(const Scene& scene, const Material& m, const ShadedPoint& point, Vec2f uv, Vec3f tangent,
-                    LobeSurface<K>& surface, Rgb& emission) {
+                    const LobeNumbers& numbers, LobeSurface<K>& surface, Rgb& emission) {
   Slots slots;
   if (m.program) runProgram(scene, point, slots);
   const auto color = [&](const ColorInput& c) {
@@ -50,9 +50,7 @@ Framef resolveLobes(const Scene& scene, const Material& m, const ShadedPoint& po
   };
   const auto frameAround = [&](Vec3f n, bool anisotropic, float rotation, int along = -1) {
     if (!anisotropic) return Framef::around(n);
-    const Framef f = Framef::around(n, along >= 0 ? directionOf(scene, *m.program, slots, along) : tangent);
-    const float c = std::cos(rotation), s = std::sin(rotation);
-    return Framef{f.x * c + f.y * s, f.y * c - f.x * s, n};
+    return turned(Framef::around(n, along >= 0 ? directionOf(scene, *m.program, slots, along) : tangent), rotation);
   };
   emission = isBlack(m.emission.value) ? Rgb{0, 0, 0} : color(m.emission);
 
@@ -60,13 +58,13 @@ Framef resolveLobes(const Scene& scene, const Material& m, const ShadedPoint& po
     Lobe diffuse, ward;
     diffuse.weight = notNegative(color(m.diffuse));
     ward.weight = notNegative(color(m.specular));
-    ward.kind = static_cast<LobeKind>(static_cast<int>(LobeKind::kWard) + static_cast<int>(m.variant));
+    ward.kind = wardKind(m.variant);
     ward.ax = clampedAlpha(scalar(m.alphaX)), ward.ay = clampedAlpha(scalar(m.alphaY));
     const Framef frame = frameAround(normalOf(m.normal, point.normal), ward.ax != ward.ay, m.rotation);
     surface.begin(frame, point.wo);
     if (maxComponent(diffuse.weight) > 0) surface.add(diffuse);
     if (maxComponent(ward.weight) > 0) surface.add(ward);
-    surface.finish();
+    surface.finish(numbers);
     return frame;
   }
 
@@ -101,13 +99,13 @@ Framef resolveLobes(const Scene& scene, const Material& m, const ShadedPoint& po
       surface.add(lobe);
     });
   }
-  surface.finish();
+  surface.finish(numbers);
   return frame;
 }
 
-#define WARDMIS_INSTANTIATE(K)                                                                                      \
-  template Framef resolveLobes<K>(const Scene&, const Material&, const ShadedPoint&, Vec2f, Vec3f, LobeSurface<K>&, \
-                                  Rgb&);
+#define WARDMIS_INSTANTIATE(K)                                                                                         \
+  template Framef resolveLobes<K>(const Scene&, const Material&, const ShadedPoint&, Vec2f, Vec3f, const LobeNumbers&, \
+                                  LobeSurface<K>&, Rgb&);
 WARDMIS_TECHNIQUE_COUNTS(WARDMIS_INSTANTIATE)
 
 }  // namespace wardmis::detail

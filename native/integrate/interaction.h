@@ -101,6 +101,12 @@ inline Vec3f bent(Vec3f ns, Vec3f ng, Vec3f wo) {
   return facing < kGrazing && dot(ns, ng) > 0 ? normalize(ns + wo * (kGrazing - facing)) : ns;
 }
 
+// The frame turned about its z.
+inline Framef turned(const Framef& f, float angle) {
+  const float c = std::cos(angle), s = std::sin(angle);
+  return {f.x * c + f.y * s, f.y * c - f.x * s, f.z};
+}
+
 // The surface's inputs where the material has a program.
 void resolve(const Scene& scene, const Material& material, const ShadedPoint& point, Vec2f uv, Surface& surface,
              Rgb& emission, Vec3f& normal);
@@ -108,7 +114,7 @@ void resolve(const Scene& scene, const Material& material, const ShadedPoint& po
 // The lobes of any material, and its light. Leaves the frame in which they are told.
 template <size_t K>
 Framef resolveLobes(const Scene& scene, const Material& material, const ShadedPoint& point, Vec2f uv, Vec3f tangent,
-                    LobeSurface<K>& surface, Rgb& emission);
+                    const LobeNumbers& numbers, LobeSurface<K>& surface, Rgb& emission);
 
 }  // namespace detail
 
@@ -116,8 +122,8 @@ namespace detail {
 
 // placement: of the hit, where it is at the ray's time.
 template <uint32_t N, size_t K>
-InteractionOf<SurfaceOf<N, K>> interactWith(const Scene& scene, const Placement& placement, const Shape& shape,
-                                            const Ray& ray, const Hit& hit) {
+InteractionOf<SurfaceOf<N, K>> interactWith(const Scene& scene, const LobeNumbers& lobes, const Placement& placement,
+                                            const Shape& shape, const Ray& ray, const Hit& hit) {
   const Material& m = scene.materials[static_cast<size_t>(shape.material)];
   const uint32_t* i = shape.indices + 3 * size_t{hit.triangle};
 
@@ -155,8 +161,8 @@ InteractionOf<SurfaceOf<N, K>> interactWith(const Scene& scene, const Placement&
   const ShadedPoint point{placement, shape, hit.triangle, hit.u,  hit.v,  x.position,
                           ng,        ns,    x.wo,         turned, x.path, hit.t};
   if constexpr ((N & kNeedsLobes) != 0) {
-    x.frame =
-        resolveLobes<K>(scene, m, point, uv, tangent(placement, shape, i, corner, x.position), x.surface, x.emission);
+    x.frame = resolveLobes<K>(scene, m, point, uv, tangent(placement, shape, i, corner, x.position), lobes, x.surface,
+                              x.emission);
     return x;
   } else {
     const auto color = [&](const ColorInput& c) { return c.texture.texture >= 0 ? evaluate(scene, c, uv) : c.value; };
@@ -177,9 +183,7 @@ InteractionOf<SurfaceOf<N, K>> interactWith(const Scene& scene, const Placement&
     if constexpr ((N & kNeedsSpecular) != 0) x.surface.variant = m.variant;
 
     if ((N & kNeedsSpecular) != 0 && x.surface.ax != x.surface.ay) {
-      const Framef f = Framef::around(ns, tangent(placement, shape, i, corner, x.position));
-      const float c = std::cos(m.rotation), s = std::sin(m.rotation);
-      x.frame = {f.x * c + f.y * s, f.y * c - f.x * s, ns};
+      x.frame = detail::turned(Framef::around(ns, tangent(placement, shape, i, corner, x.position)), m.rotation);
     } else {
       x.frame = Framef::around(ns);
     }
@@ -195,11 +199,11 @@ InteractionOf<SurfaceOf<N, K>> interact(const Scene& scene, const Geometry& geom
   const Placement& placement = geometry.placements[hit.placement];
   const Shape& shape = geometry.shapes[hit.shape];
   if (placement.motion != nullptr) [[unlikely]] {
-    auto x = detail::interactWith<N, K>(scene, placement.at(ray.path.time), shape, ray, hit);
+    auto x = detail::interactWith<N, K>(scene, geometry.lobes, placement.at(ray.path.time), shape, ray, hit);
     x.clearance *= 4;  // the transform has been interpolated twice, here and in Embree
     return x;
   }
-  return detail::interactWith<N, K>(scene, placement, shape, ray, hit);
+  return detail::interactWith<N, K>(scene, geometry.lobes, placement, shape, ray, hit);
 }
 
 }  // namespace wardmis

@@ -8,6 +8,7 @@
 
 #include "bsdf/lobe.h"
 #include "mis/technique.h"
+#include "world/geometry.h"
 
 namespace wardmis {
 
@@ -38,43 +39,51 @@ class LobeSurface {
   void add(const Lobe& lobe) {
     if (lobe.kind == LobeKind::kTransparent) {
       transparent += lobe.weight;
-    } else if (lobe.kind == LobeKind::kLambert && lobe.frame == 0) {
+      return;
+    }
+    // what has no direction but the normal needs no frame of its own for another tangent
+    const bool own = lobe.frame != 0 && !(detail::isDiffuse(lobe.kind) && frame_[lobe.frame].z == frame_[0].z);
+    if (lobe.kind == LobeKind::kLambert && !own) {
       diffuse_ += lobe.weight;
     } else if (count_ < kMostLobes) {
-      lobe_[count_++] = lobe;
+      lobe_[count_] = lobe;
+      if (!own) lobe_[count_].frame = 0;
+      ++count_;
     }
   }
-  // Shares the lobes out among the techniques, in their order; those that are too many share one.
-  void finish() {
-    strength_.fill(0), sum_.fill(0), delta_.fill(false);
+  // Shares the lobes out among the techniques, by their classes or in their order; those that are too many share one.
+  void finish(const LobeNumbers& numbers) {
+    strength_.fill(0), delta_.fill(false), reflection_.fill(0);
     strength_[kCosine] = luminance(diffuse_);
     std::array<float, kMostLobes> strength;
     size_t rough = 0, sharp = 0;
+    LobeCounts of{};
     for (int i = 0; i < count_; ++i) {
       strength[i] = strengthOf(lobe_[i]);
-      if (isDelta(lobe_[i].kind))
-        ++sharp;
-      else if (!byCosine(lobe_[i]))
-        ++rough;
+      if (byCosine(lobe_[i])) continue;
+      ++(isDelta(lobe_[i].kind) ? sharp : rough);
+      ++of[static_cast<size_t>(classOf(lobe_[i].kind))];
     }
+    bool byClass = numbers.byClass;
+    for (size_t c = 0; c < kLobeClasses; ++c) byClass = byClass && of[c] <= numbers.count[c];
     // sharp ones never share with others: one technique is theirs at least
     const size_t forRough = std::min(rough, kSlots - (sharp > 0 ? 1 : 0)),
                  forSharp = std::min(sharp, kSlots - forRough);
     size_t nextRough = 0, nextSharp = forRough;
+    LobeCounts next = numbers.first;
     for (int i = 0; i < count_; ++i) {
+      const bool delta = isDelta(lobe_[i].kind);
       size_t slot = kCosine;
-      if (isDelta(lobe_[i].kind)) {
-        slot = std::min(nextSharp++, forRough + forSharp - 1);
-        delta_[slot] = true;
-      } else if (!byCosine(lobe_[i])) {
-        slot = std::min(nextRough++, forRough - 1);
-      }
+      if (!byCosine(lobe_[i]))
+        slot = byClass ? next[static_cast<size_t>(classOf(lobe_[i].kind))]++
+               : delta ? std::min(nextSharp++, forRough + forSharp - 1)
+                       : std::min(nextRough++, forRough - 1);
+      if (delta) delta_[slot] = true;
       slot_[i] = static_cast<uint8_t>(slot);
-      share_[i] = strength[i];
       strength_[slot] += strength[i];
-      sum_[slot] += strength[i];
+      reflection_[slot] |= isMatte(lobe_[i].kind) ? kSeenByDiffuse : kSeenByGlossy;
     }
-    for (int i = 0; i < count_; ++i) share_[i] = sum_[slot_[i]] > 0 ? share_[i] / sum_[slot_[i]] : 1;
+    for (int i = 0; i < count_; ++i) share_[i] = strength_[slot_[i]] > 0 ? strength[i] / strength_[slot_[i]] : 1;
   }
 
   bool hasLobe(size_t slot) const { return strength_[slot] > 0; }
@@ -83,16 +92,15 @@ class LobeSurface {
     return std::any_of(strength_.begin(), strength_.end(), [](float s) { return s > 0; });
   }
   bool delta(size_t slot) const { return delta_[slot]; }
+  // The kinds of ray, of Visibility, that a technique's lobes send to the viewer's side or to the other.
+  uint8_t rays(size_t slot, bool ahead) const { return ahead ? reflection_[slot] : uint8_t{kSeenByTransmission}; }
   // About the share of light from all around that it sends to the viewer.
   float strength(size_t slot) const { return strength_[slot]; }
   float diffuseStrength() const { return strength_[kCosine]; }
   Rgb albedo() const {
     Rgb sum = diffuse_;
-    for (int i = 0; i < count_; ++i) sum += lobe_[i].weight * lookOf(lobe_[i]);
+    for (int i = 0; i < count_; ++i) sum += albedoOf(lobe_[i]);
     return sum;
-  }
-  bool transmits() const {
-    return std::any_of(lobe_.begin(), lobe_.begin() + count_, [](const Lobe& l) { return wardmis::transmits(l.kind); });
   }
   // Whether the rounding of float directions would show, as Surface has it.
   bool needsDouble(float cosThetaO) const {
@@ -112,8 +120,10 @@ class LobeSurface {
     p[kCosine] = hasDiffuse() ? cosine : 0;
     for (int i = 0; i < count_; ++i) {
       const Lobe& l = lobe_[i];
-      if (isDelta(l.kind) || wardmis::transmits(l.kind) == ahead) continue;
-      const LobeValue<T> v = wardmis::evaluate(l, local(l, wi), local(l, wo));
+      if (isDelta(l.kind) || !(ahead ? wardmis::reflects(l.kind) : wardmis::transmits(l.kind))) continue;
+      const Vec3<T> w = local(l, wi);
+      if ((w.z > T(0)) != ahead) continue;
+      const LobeValue<T> v = wardmis::evaluate(l, w, local(l, wo));
       f[slot_[i]] += Rgb{static_cast<float>(v.fCos.x), static_cast<float>(v.fCos.y), static_cast<float>(v.fCos.z)};
       if (slot_[i] != kCosine) p[slot_[i]] += share_[i] * static_cast<float>(v.pdf);
     }
@@ -122,11 +132,12 @@ class LobeSurface {
   struct Sample {
     int lobe = 0;
     bool glossy = true, transmits = false;
+    bool lost = false;  // zero, and it counts: it left on a side where the lobe has nothing
   };
-  // A direction of a technique's lobes, in frame 0. u.x chooses among several, and is used again.
+  // A direction of a technique's lobes, in frame 0. v chooses among several, and what is left of it in glass.
   template <class T>
-  Vec3<T> sample(size_t slot, Vec3<T> wo, Vec2<T> u, Sample& from) const {
-    float left = static_cast<float>(u.x);
+  Vec3<T> sample(size_t slot, Vec3<T> wo, Vec2<T> u, float v, Sample& from) const {
+    float left = v;
     int chosen = -1;
     for (int i = 0; i < count_; ++i) {
       if (slot_[i] != slot) continue;
@@ -135,10 +146,12 @@ class LobeSurface {
       left -= share_[i];
     }
     const Lobe& l = lobe_[chosen];
-    if (share_[chosen] < 1) u.x = T(std::clamp(left / share_[chosen], 0.0f, 0x1.fffffep-1f));
-    from = {chosen, true, wardmis::transmits(l.kind)};
-    from.glossy = l.kind != LobeKind::kTranslucent && l.kind != LobeKind::kRoughTranslucent;
-    return global(l, wardmis::sample(l, local(l, wo), u));
+    if (share_[chosen] < 1) left = std::clamp(left / share_[chosen], 0.0f, 0x1.fffffep-1f);
+    const Vec3<T> wi = wardmis::sample(l, local(l, wo), u, T(left));
+    from = {chosen, true, wi.z < T(0)};
+    from.glossy = !isMatte(l.kind);
+    from.lost = !(wi.z > T(0) ? wardmis::reflects(l.kind) : wi.z < T(0) && wardmis::transmits(l.kind));
+    return global(l, wi);
   }
   // Of a sharp lobe's sample: f cos / pdf, the choice of the lobe included.
   template <class T>
@@ -154,21 +167,23 @@ class LobeSurface {
     return l.frame == 0 && detail::isDiffuse(l.kind) && !wardmis::transmits(l.kind);
   }
 
-  // What a lobe's facets do to light from the view, of rough ones in mean over what they are turned by.
-  Rgb lookOf(const Lobe& l) const {
+  // What a lobe sends to the view of light from all around: of rough facets in mean over what they are turned by.
+  Rgb albedoOf(const Lobe& l) const {
     const bool refracts = l.kind == LobeKind::kSharpRefraction || l.kind == LobeKind::kGgxRefraction ||
                           l.kind == LobeKind::kBeckmannRefraction;
     const float c = cosine(l.frame), spread = isDelta(l.kind) ? 0 : std::sqrt(l.ax * l.ay);
     const auto at = [&](float x) {
       const float clamped = std::clamp(x, 0.0f, 1.0f);
-      return refracts ? transmittance(l, clamped) : reflectance(l, clamped);
+      const Rgb all = l.weight * (refracts ? transmittance(l, clamped) : reflectance(l, clamped));
+      return isGlass(l.kind) ? all + l.through * transmittance(l, clamped) : all;
     };
     return spread > 0 ? (at(c - spread) + at(c) + at(c + spread)) / 3.0f : at(c);
   }
   // Never so little that its light would be rare and bright.
   float strengthOf(const Lobe& l) const {
-    const float w = luminance(l.weight), least = isDelta(l.kind) ? 0 : 0.05f;
-    return w * std::clamp(luminance(lookOf(l)), least, 1.0f);
+    const float most = luminance(isGlass(l.kind) ? l.weight + l.through : l.weight),
+                least = isDelta(l.kind) ? 0 : 0.05f * most;
+    return std::clamp(luminance(albedoOf(l)), least, most);
   }
 
   template <class T>
@@ -193,8 +208,9 @@ class LobeSurface {
   std::array<uint8_t, kMostLobes> slot_;
   std::array<float, kMostLobes> share_;
   std::array<Framef, kMostFrames> frame_;
-  std::array<float, K - 1> strength_, sum_;
+  std::array<float, K - 1> strength_;
   std::array<bool, K - 1> delta_;
+  std::array<uint8_t, K - 1> reflection_;
 };
 
 }  // namespace wardmis

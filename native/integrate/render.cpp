@@ -273,7 +273,7 @@ PathLimits RenderSettings::limits() const {
   if (integrator == Integrator::kDirect) return limits;
   limits.depth = maxDepth;
   limits.bounces[kGlossyBounce] = maxGlossy, limits.bounces[kDiffuseBounce] = maxDiffuse;
-  limits.bounces[kTransmissionBounce] = kLongestPath;
+  limits.bounces[kTransmissionBounce] = maxTransmission;
   return limits;
 }
 

@@ -48,6 +48,8 @@ struct RenderSettings {
   int maxDepth = 8;                     // surface hits of a path
   int maxDiffuse = kLongestPath;        // of them reached from a cosine sample, and not emitting alone: diffuse bounces
   int maxGlossy = kLongestPath;         // from a lobe sample
+  int maxTransmission = kLongestPath;   // from one that goes through the surface
+  int maxTransparent = 8;               // surfaces that a path passes straight
   uint64_t seed = 0;
   int threads = 0;  // 0: all
   bool generalKernel = false;

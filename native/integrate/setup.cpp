@@ -58,7 +58,7 @@ TechniqueMask techniquesOf(const BuiltScene& built, uint32_t needs) {
   if (built.emitters.any()) mask |= maskOf(Techniques<K>::kLight);
   if (!surfaceRays(built, needs)) return mask;
   if ((needs & kNeedsSpecular) != 0)
-    for (size_t l = 0; l < built.lobes(); ++l) mask |= maskOf(l);
+    for (size_t l = 0; l < built.geometry.lobes.used(); ++l) mask |= maskOf(l);
   if ((needs & kNeedsDiffuse) != 0) mask |= maskOf(Techniques<K>::kCosine);
   return mask;
 }
@@ -88,21 +88,17 @@ BuiltScene::BuiltScene(const Scene& s, int threads)
   seconds = wallSeconds() - seconds;
 }
 
-size_t BuiltScene::lobes() const {
-  size_t most = 1;
-  for (const Shape& s : geometry.shapes) {
-    size_t lobes = 0;
-    for (const Closure& c : scene.materials[static_cast<size_t>(s.material)].closures) lobes += mostLobes(c);
-    most = std::max(most, lobes);
-  }
-  return std::min(most, size_t{kMaxTechniques - 2});
-}
-
 std::vector<std::string> BuiltScene::techniqueNames() const {
   return withTechniques(lobes(), [&](auto k) {
+    constexpr size_t kLobes = Techniques<k()>::kLobes;
     std::vector<std::string> names(k());
-    for (size_t l = 0; l < Techniques<k()>::kLobes; ++l)
-      names[l] = Techniques<k()>::kLobes == 1 ? "lobe" : fmt::format("lobe {}", l + 1);
+    for (size_t l = 0; l < kLobes; ++l) names[l] = kLobes == 1 ? "lobe" : fmt::format("lobe {}", l + 1);
+    const LobeNumbers& n = geometry.lobes;
+    for (size_t c = 0; n.byClass && c < kLobeClasses; ++c)
+      for (size_t i = 0; i < n.count[c]; ++i) {
+        const std::string_view kind = name(static_cast<LobeClass>(c));
+        names[n.first[c] + i] = n.count[c] == 1 ? std::string(kind) : fmt::format("{} {}", kind, i + 1);
+      }
     names[Techniques<k()>::kCosine] = "cosine", names[Techniques<k()>::kLight] = "light";
     return names;
   });
@@ -124,7 +120,8 @@ RenderSetup<K>::RenderSetup(const BuiltScene& built, const RenderSettings& s)
     : needs(wardmis::needs(built, s)),
       kernelNeeds(wardmis::kernelNeeds(built, s)),
       techniques(techniquesOf<K>(built, needs)),
-      world_{built.scene, built.geometry, built.accel, built.emitters, (needs & kNeedsTransparency) != 0},
+      world_{built.scene, built.geometry, built.accel, built.emitters,
+             (needs & kNeedsTransparency) != 0 ? s.maxTransparent : 0},
       camera_(*built.scene.camera, built.scene.film),
       shutter_(built.scene.film.shutter.open, built.scene.film.shutter.rolling),
       filter_(built.scene.film.filter, built.scene.film.filterWidth),

@@ -25,8 +25,8 @@ struct BuiltScene {
   Emitters emitters;
   Accel accel;
 
-  size_t lobes() const;  // that a surface may have, as far as each has a technique of its own
-  std::vector<std::string> techniqueNames() const;  // in what is written
+  size_t lobes() const { return geometry.lobes.most; }  // of a surface, as far as each has a technique of its own
+  std::vector<std::string> techniqueNames() const;      // in what is written
 };
 
 // What a render with these settings needs, and the mask of the kernel that it runs.

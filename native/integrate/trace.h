@@ -15,12 +15,10 @@ struct RenderScene {
   const Geometry& geometry;
   const Accel& accel;
   const Emitters& emitters;
-  bool transparency = false;  // some surface lets light straight through
+  // Surfaces that a path passes straight, all its rays together, and a shadow ray from there; the next one lets nothing
+  // through. 0 also where no surface does.
+  int mostTransparent = 0;
 };
-
-// Surfaces that a path passes, all its rays together, and a shadow ray from there; Cycles' default. The next one lets
-// nothing through.
-inline constexpr int kMostTransparent = 8;
 
 namespace detail {
 
@@ -30,8 +28,9 @@ float behind(const X& x, Vec3f direction, float t) {
   constexpr float kGrazing = 1e-3f;
   return t + std::max(2 * x.clearance / std::max(std::abs(dot(x.geometric, direction)), kGrazing), t * 1e-6f);
 }
-inline bool mayPass(const RenderScene& world, const Hit& hit) {
-  return world.scene.materials[static_cast<size_t>(world.geometry.shapes[hit.shape].material)].transparent;
+inline bool mayPass(const RenderScene& world, const Ray& ray, const Hit& hit) {
+  return ray.path.transparent < world.mostTransparent &&
+         world.scene.materials[static_cast<size_t>(world.geometry.shapes[hit.shape].material)].transparent;
 }
 
 }  // namespace detail
@@ -45,11 +44,11 @@ Hit trace(const RenderScene& world, Ray& ray, uint32_t key, Rgb& weight, Along&&
     const Hit hit = world.accel.intersect(ray);
     along(hit.t, !hit.valid());
     if constexpr ((N & kNeedsLobes) == 0) return hit;
-    if (!world.transparency || !hit.valid() || !detail::mayPass(world, hit)) return hit;
+    if (!hit.valid() || !detail::mayPass(world, ray, hit)) return hit;
     const auto x = interact<N, K>(world.scene, world.geometry, ray, hit);
     const Rgb through = x.surface.transparent;
     const float q = std::clamp((through.x + through.y + through.z) / 3, 0.0f, 1.0f);
-    if (!(q > 0) || ray.path.transparent >= kMostTransparent) return hit;
+    if (!(q > 0)) return hit;
     if (toUnit(combine(key, 0x51ed270bu + passed)) >= q) {
       weight = weight / (1 - q);
       return hit;
@@ -65,12 +64,12 @@ template <uint32_t N, size_t K>
 Rgb transmittance(const RenderScene& world, Ray ray) {
   constexpr Rgb kAll{1, 1, 1}, kNone{0, 0, 0};
   if constexpr ((N & kNeedsLobes) == 0) return world.accel.occluded(ray) ? kNone : kAll;
-  if (!world.transparency) return world.accel.occluded(ray) ? kNone : kAll;
+  if (world.mostTransparent == 0) return world.accel.occluded(ray) ? kNone : kAll;
   Rgb left = kAll;
   for (;;) {
     const Hit hit = world.accel.intersect(ray);
     if (!hit.valid()) return left;
-    if (ray.path.transparent >= kMostTransparent || !detail::mayPass(world, hit)) return kNone;
+    if (!detail::mayPass(world, ray, hit)) return kNone;
     const auto x = interact<N, K>(world.scene, world.geometry, ray, hit);
     left *= x.surface.transparent;
     if (!(maxComponent(left) > 0)) return kNone;

@@ -26,7 +26,8 @@ enum RayKind : uint16_t {
 // How a path came to where it is: what Light Path tells, and how long it was.
 struct PathState {
   uint16_t kinds = kCameraRay;  // of the current ray
-  uint8_t depth = 0, diffuse = 0, glossy = 0, transparent = 0, transmission = 0;
+  uint8_t depth = 0, diffuse = 0, glossy = 0, transmission = 0;
+  uint16_t transparent = 0;
   float before = 0;   // length of the path before the current ray
   float time = 0.5f;  // of all of it: where in the shutter's opening, 0 to 1
 
@@ -50,7 +51,7 @@ struct PathState {
   // Straight through a surface.
   PathState passed() const {
     PathState next = *this;
-    next.transparent = static_cast<uint8_t>(next.transparent + (next.transparent < 255));
+    next.transparent = static_cast<uint16_t>(next.transparent + (next.transparent < 65535));
     return next;
   }
 };

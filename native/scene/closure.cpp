@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/closure.h"
 
+#include "bsdf/principled3.h"
+
 namespace wardmis {
 
 namespace {
@@ -61,32 +63,60 @@ constexpr ClosureInfo kTable[kClosureTypes] = {
 
 const ClosureInfo& info(ClosureType type) { return kTable[static_cast<size_t>(type)]; }
 
-size_t mostLobes(const Closure& c) {
+LobeCounts mostLobes(const Closure& c) {
+  LobeCounts counts{};
+  const auto add = [&](LobeClass kind, bool is = true) { counts[static_cast<size_t>(kind)] += is ? 1 : 0; };
+  // about a normal of its own a diffuse lobe has a technique of its own
+  add(LobeClass::kDiffuse, c.normal >= 0 && mayBeDiffuse(c));
+  const auto addGlass = [&](const ScalarInput& roughness) {
+    const bool known = roughness.texture.texture < 0 && roughness.result < 0, smooth = known && !(roughness.value > 0);
+    add(LobeClass::kGlass, !smooth);
+    add(LobeClass::kGlossy, !known || smooth), add(LobeClass::kRefraction, !known || smooth);
+  };
   switch (c.type) {
     case ClosureType::kTranslucent:
+      add(LobeClass::kTranslucent);
+      break;
     case ClosureType::kWard:
     case ClosureType::kGlossy:
-    case ClosureType::kRefraction:
-    case ClosureType::kSheen:
-      return 1;
+      add(LobeClass::kGlossy);
+      break;
     case ClosureType::kGlass:
-      return 2;
+      addGlass(c.scalars[0]);
+      break;
+    case ClosureType::kRefraction:
+      add(LobeClass::kRefraction);
+      break;
+    case ClosureType::kSheen:
+      add(LobeClass::kSheen);
+      break;
     case ClosureType::kPrincipled3: {
       using namespace principled3;
-      const bool gloss = !c.isConstant(kSpecular, 0) || !c.isConstant(kMetallic, 0);
-      return size_t{gloss} + size_t{!c.isConstant(kClearcoat, 0)} + 2 * size_t{!c.isConstant(kTransmission, 0)};
+      const ScalarInput& r = c.scalars[kRoughness];
+      const bool through = !c.isConstant(kTransmission, 0), white = c.distribution == Glossy::kMultiGgx;
+      const bool rough = r.texture.texture < 0 && r.result < 0 && r.value > kLeastCompensated3;
+      add(LobeClass::kGlossy, !c.isConstant(kSpecular, 0) || !c.isConstant(kMetallic, 0));
+      add(LobeClass::kGlossy, !c.isConstant(kClearcoat, 0));
+      add(LobeClass::kGlass, through && white);
+      add(LobeClass::kGlossy, through && !(white && rough)), add(LobeClass::kRefraction, through && !(white && rough));
+      break;
     }
     case ClosureType::kPrincipled: {
       using namespace principled;
-      const size_t through = c.isConstant(kTransmissionWeight, 0) ? 0 : 2,
-                   thin = c.thinWall && !c.isConstant(kSubsurfaceWeight, 0) ? 1 : 0;
-      const bool dielectric = !c.isConstant(kMetallic, 1);
-      return size_t{!c.isConstant(kMetallic, 0)} + (dielectric ? 1 + through + thin : 0) +
-             size_t{!c.isConstant(kCoatWeight, 0)} + size_t{!c.isConstant(kSheenWeight, 0)};
+      const bool dielectric = !c.isConstant(kMetallic, 1),
+                 through = dielectric && !c.isConstant(kTransmissionWeight, 0);
+      add(LobeClass::kGlossy, dielectric), add(LobeClass::kGlossy, !c.isConstant(kMetallic, 0));
+      add(LobeClass::kGlossy, !c.isConstant(kCoatWeight, 0));
+      add(LobeClass::kSheen, !c.isConstant(kSheenWeight, 0));
+      if (through && !c.thinWall) addGlass(c.scalars[kRoughness]);
+      add(LobeClass::kGlossy, through && c.thinWall), add(LobeClass::kRefraction, through && c.thinWall);
+      add(LobeClass::kTranslucent, dielectric && c.thinWall && !c.isConstant(kSubsurfaceWeight, 0));
+      break;
     }
     default:
-      return 0;
+      break;
   }
+  return counts;
 }
 
 bool mayBeTransparent(const Closure& c) {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -62,8 +63,11 @@ struct Closure {
   }
 };
 
-// The number of lobes that it may become; what reflects diffusely, and what lets light straight through, is none.
-size_t mostLobes(const Closure& closure);
+// How many lobes of each class there may be, beside those that reflect diffusely about the mesh's normal.
+using LobeCounts = std::array<uint8_t, kLobeClasses>;
+inline size_t total(const LobeCounts& counts) { return std::accumulate(counts.begin(), counts.end(), size_t{0}); }
+// What it may become at most; what lets light straight through is no lobe.
+LobeCounts mostLobes(const Closure& closure);
 // Whether light may go straight through.
 bool mayBeTransparent(const Closure& closure);
 // Whether some of it reflects diffusely.

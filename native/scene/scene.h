@@ -101,8 +101,9 @@ enum Visibility : uint8_t {
   kSeenByDiffuse = 2,
   kSeenByGlossy = 4,
   kCastsShadow = 8,
-  kSeenBySurfaces = kSeenByDiffuse | kSeenByGlossy,
-  kSeenByAll = 15
+  kSeenByTransmission = 16,  // whatever transmits: diffuse and glossy are reflections
+  kSeenBySurfaces = kSeenByDiffuse | kSeenByGlossy | kSeenByTransmission,
+  kSeenByAll = 31
 };
 
 // What programs read of an object.

@@ -16,6 +16,26 @@ bool deforms(const Mesh& mesh) {
   return std::any_of(mesh.parts.begin(), mesh.parts.end(), [](const MeshPart& p) { return !p.movedPositions.empty(); });
 }
 
+LobeNumbers numberLobes(const Scene& scene, const std::vector<Shape>& shapes) {
+  LobeNumbers n;
+  for (const Shape& s : shapes) {
+    LobeCounts own{};
+    const Material& m = scene.materials[static_cast<size_t>(s.material)];
+    if (m.closures.empty() && maxComponent(m.specular.value) > 0) own[static_cast<size_t>(LobeClass::kGlossy)] = 1;
+    for (const Closure& c : m.closures) {
+      const LobeCounts more = mostLobes(c);
+      for (size_t k = 0; k < kLobeClasses; ++k) own[k] = static_cast<uint8_t>(own[k] + more[k]);
+    }
+    for (size_t k = 0; k < kLobeClasses; ++k) n.count[k] = std::max(n.count[k], own[k]);
+    n.most = std::max(n.most, total(own));
+  }
+  n.most = std::min(n.most, size_t{kMaxTechniques - 2});
+  const size_t room = withTechniques(n.most, [](auto k) { return Techniques<k()>::kLobes; });
+  n.byClass = room > 1 && total(n.count) <= room;
+  for (size_t k = 1; k < kLobeClasses; ++k) n.first[k] = static_cast<uint8_t>(n.first[k - 1] + n.count[k - 1]);
+  return n;
+}
+
 }  // namespace
 
 Corners movedCorners(const Shape& s, const uint32_t* i, float time) {
@@ -72,6 +92,8 @@ Geometry::Geometry(const Scene& scene) {
                           instance.motion ? &frames.emplace_back(*instance.motion) : nullptr});
     for (uint32_t s = first; s < first + count; ++s) triangles += shapes[s].triangles;
   }
+
+  lobes = numberLobes(scene, shapes);
 
   // Bounds: of the vertices in use as placed (corners of the mesh's box for shared meshes).
   const float inf = std::numeric_limits<float>::infinity();

@@ -8,6 +8,7 @@
 #include <deque>
 #include <vector>
 
+#include "mis/technique.h"
 #include "scene/scene.h"
 #include "world/motion.h"
 
@@ -53,12 +54,22 @@ struct Placement {
   }
 };
 
+// How the techniques of lobes are numbered: where there are enough, each class has numbers of its own on all surfaces.
+struct LobeNumbers {
+  LobeCounts first{}, count{};  // of each class, if byClass
+  size_t most = 1;              // lobes of a surface, as far as each has a technique of its own
+  bool byClass = false;
+
+  size_t used() const { return byClass ? total(count) : most; }
+};
+
 struct Geometry {
   std::vector<Shape> shapes;
   std::vector<Placement> placements;
   std::vector<std::vector<Vec3f>> positions;    // of all shapes, each padded by one vertex
   std::deque<MovingFrame> frames;               // of placements that move
   std::deque<std::vector<const Vec3f*>> moved;  // of shapes that deform
+  LobeNumbers lobes;                            // of the shapes' materials
   uint64_t triangles = 0;                       // placed, instances counted
   Vec3f lower{0, 0, 0}, upper{0, 0, 0};         // bounds, world space
 

@@ -22,7 +22,7 @@ uint32_t needs(const Material& m) {
   for (const Closure& c : m.closures) {
     n |= kNeedsLobes;
     if (mayBeDiffuse(c)) n |= kNeedsDiffuse;
-    if (mostLobes(c) > 0) n |= kNeedsSpecular;
+    if (total(mostLobes(c)) > 0) n |= kNeedsSpecular;
     if (mayBeTransparent(c)) n |= kNeedsTransparency;
   }
   if (m.hasTextures() || (m.program && !m.program->textures.empty())) n |= kNeedsTextures;

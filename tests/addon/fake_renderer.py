@@ -30,6 +30,7 @@ MODES = {
     "nothing": "says that it is done, and makes no image",
     "wrong-size": "makes an image of the wrong size",
     "odd-event": "tells of its progress in a way of its own",
+    "many-lobes": "has five techniques",
 }
 PASSES = {
     "Combined": "RGBA",
@@ -85,7 +86,7 @@ def parse():
     parser.add_argument("--spp", type=int, default=64)
     parser.add_argument("--watch-stdin", action="store_true")
     parser.add_argument("--passes", type=lambda names: names.split(","), default=[name.lower() for name in PASSES])
-    options = "allocation weights integrand integrator time samples-per-hit pilot-spp min-fraction max-depth max-diffuse max-glossy sampler seed threads progress"
+    options = "allocation weights integrand integrator time samples-per-hit pilot-spp min-fraction max-depth max-diffuse max-glossy max-transmission max-transparent sampler seed threads progress"
     for option in options.split():
         parser.add_argument("--" + option)
     return parser.parse_args()
@@ -109,7 +110,11 @@ def read_scene(path):
 def render(options, film, mode):
     x0, y0, x1, y1 = film["border"]
     width, height = x1 - x0, y1 - y0
-    chosen = {name: channels for name, channels in PASSES.items() if name.split()[0].lower() in options.passes}
+    known = dict(PASSES)
+    if mode == "many-lobes":
+        del known["Allocation Lobe"]
+        known |= {f"Allocation {name}": "X" for name in ("Glass", "Glossy", "Lobe 3")}
+    chosen = {name: channels for name, channels in known.items() if name.split()[0].lower() in options.passes}
     passes = [{"name": name, "channels": channels} for name, channels in chosen.items()]
     say(
         event="start",

@@ -80,6 +80,8 @@ class Settings(unittest.TestCase):
             ("--max-depth D", "max_depth"),
             ("--max-diffuse B", "max_diffuse"),
             ("--max-glossy B", "max_glossy"),
+            ("--max-transmission B", "max_transmission"),
+            ("--max-transparent B", "max_transparent"),
         ):
             line = next(line for line in COMMAND.splitlines() if line.startswith(f"| `{option}`"))
             default = float(re.search(r"\(([\d.]+)\)", line.split("|")[2])[1])

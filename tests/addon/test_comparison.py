@@ -223,6 +223,8 @@ LOOKED_AT = [
     "max_bounces",
     "diffuse_bounces",
     "glossy_bounces",
+    "transmission_bounces",
+    "transparent_max_bounces",
     "pixel_filter_type",
     "filter_width",
     "film_exposure",
@@ -292,18 +294,29 @@ class CyclesSettings(ComparisonTest):
     def test_limits_are_the_same_in_both_and_that_is_said(self):
         settings, cycles = self.scene.wardmis, self.scene.cycles
         cycles.max_bounces, cycles.diffuse_bounces, cycles.glossy_bounces = 9, 2, 3
+        cycles.transmission_bounces, cycles.transparent_max_bounces = 4, 5
         for changes, expected, options in (
-            ({"max_depth": 8}, (7, 7, 7), ["--max-depth", "8"]),
-            ({"max_diffuse": 1}, (7, 1, 7), ["--max-depth", "8", "--max-diffuse", "1"]),
-            ({"bounces": "cycles"}, (9, 2, 3), ["--max-depth", "10", "--max-diffuse", "2", "--max-glossy", "3"]),
-            ({"integrator": "direct"}, (0, 0, 0), []),
+            ({"max_depth": 8}, (7, 7, 7, 7, 8), "--max-depth 8"),
+            ({"max_diffuse": 1}, (7, 1, 7, 7, 8), "--max-depth 8 --max-diffuse 1"),
+            (
+                {"max_transmission": 2, "max_transparent": 6},
+                (7, 1, 7, 2, 6),
+                "--max-depth 8 --max-diffuse 1 --max-transmission 2 --max-transparent 6",
+            ),
+            (
+                {"bounces": "cycles"},
+                (9, 2, 3, 4, 5),
+                "--max-depth 10 --max-diffuse 2 --max-glossy 3 --max-transmission 4 --max-transparent 5",
+            ),
+            ({"integrator": "direct"}, (0, 0, 0, 0, 5), ""),
         ):
             for name, value in changes.items():
                 setattr(settings, name, value)
             seen = self.during_a_render()
-            self.assertEqual(tuple(seen[f"{kind}_bounces"] for kind in ("max", "diffuse", "glossy")), expected)
+            kinds = ("max", "diffuse", "glossy", "transmission", "transparent_max")
+            self.assertEqual(tuple(seen[f"{kind}_bounces"] for kind in kinds), expected)
             arguments = " ".join(self.calls()[-1])
-            self.assertIn(" ".join(options), arguments)
+            self.assertIn(options, arguments)
             said = f"paths end after the same bounces in both: {light_paths.Bounces(*expected)}"
             self.assertIn(said, self.manifest()["notes"])
             shutil.rmtree(self.folder)
@@ -312,7 +325,8 @@ class CyclesSettings(ComparisonTest):
     def test_limits_that_differ_are_said(self):
         self.scene.cycles.use_denoising = False
         self.during_a_render(as_is=True)
-        said = "Cycles' paths have bounces of 12 in all, 4 diffuse, 4 glossy, WardMIS' of 7 in all, 7 diffuse, 7 glossy"
+        theirs, ours = light_paths.Bounces(12, 4, 4, 12, 8), light_paths.Bounces(7, 7, 7, 7, 8)
+        said = f"Cycles' paths have bounces of {theirs}, WardMIS' of {ours}"
         self.assertIn(said, " ".join(self.manifest()["notes"]))
         shutil.rmtree(self.folder)
         self.scene.wardmis.bounces = "cycles"
@@ -324,7 +338,7 @@ class CyclesSettings(ComparisonTest):
         later = {"media_type", "use_exr_interleave", "use_fast_gi"}
         settings = [
             *cycles_settings.frame(self.scene, bpy.context.view_layer, film, 2),
-            *cycles_settings.unbiased(self.scene, light_paths.Bounces(7, 7, 7)),
+            *cycles_settings.unbiased(self.scene, light_paths.Bounces(7, 7, 7, 7, 8)),
         ]
         for owner, name, _ in settings:
             if owner in (self.scene.render, self.scene.cycles, self.scene.render.image_settings) and name not in later:

@@ -425,13 +425,14 @@ class Visibility(SceneTest):
         self.add("Inside", quad.data, inner).visible_shadow = False
         empty = self.add("Empty", None)
         empty.instance_type, empty.instance_collection = "COLLECTION", inner
-        empty.visible_diffuse = False
+        empty.visible_diffuse = empty.visible_transmission = False
         hidden = {i.name: set(i.hidden_from) for i in self.gather().instances}
-        self.assertEqual(hidden, {"Quad": {"camera", "glossy"}, "Inside": {"diffuse", "shadow"}})
+        self.assertEqual(hidden, {"Quad": {"camera", "glossy"}, "Inside": {"diffuse", "transmission", "shadow"}})
 
     def test_object_that_nothing_sees_is_left_out(self):
         quad = self.add_quad()
-        quad.visible_camera = quad.visible_glossy = quad.visible_diffuse = quad.visible_shadow = False
+        for kind in ("camera", "diffuse", "glossy", "transmission", "shadow"):
+            setattr(quad, f"visible_{kind}", False)
         self.assertEqual(self.gather().instances, [])
 
     def test_indirect_only_and_holdout_collections(self):

@@ -219,7 +219,7 @@ class Instances(GlbTest):
         instances = [InstanceData("I", 0, np.eye(4), h) for h in (frozenset(), frozenset(), hidden, hidden)]
         document, _ = self.write(scene(meshes=[triangle()], instances=instances))
         extensions = [node.get("extensions", {}).get("WARDMIS_scene") for node in document["nodes"] if "mesh" in node]
-        self.assertEqual(extensions, [None, {"visibility": ["diffuse", "glossy"]}])
+        self.assertEqual(extensions, [None, {"visibility": ["diffuse", "glossy", "transmission"]}])
 
 
 class Content(GlbTest):
@@ -290,9 +290,8 @@ class Content(GlbTest):
         self.assertEqual((spot["intensity"], spot["angle"], spot["blend"], spot["cosine"]), (7.0, 0.5, 0.2, False))
         self.assertEqual((sun["irradiance"], sun["angle"], sun["shadow"]), (3.0, 0.01, False))
         nodes = [n["extensions"]["WARDMIS_scene"] for n in document["nodes"] if "extensions" in n]
-        self.assertEqual(
-            nodes, [{"light": 0}, {"light": 1, "visibility": ["diffuse", "glossy", "shadow"]}, {"light": 2}]
-        )
+        seen = ["diffuse", "glossy", "transmission", "shadow"]
+        self.assertEqual(nodes, [{"light": 0}, {"light": 1, "visibility": seen}, {"light": 2}])
 
     def test_world_film_and_notes(self):
         data = scene(

@@ -543,18 +543,19 @@ class World(SceneTest):
         self.world.cycles_visibility.camera = self.world.cycles_visibility.glossy = False
         (world,) = self.gather().worlds
         self.assertEqual(world.hidden_from, {"camera", "glossy"})
-        self.world.cycles_visibility.diffuse = False
+        self.world.cycles_visibility.diffuse = self.world.cycles_visibility.transmission = False
         self.world.update_tag()
         self.assertEqual(self.gather().worlds, [])
 
     def test_light_path_makes_skies_for_kinds_of_ray(self):
         """Those that see the same share one; what is known of the ray's kind is nothing to note."""
         seen = {
-            "Is Camera Ray": [(2, {"camera"}), (1, {"diffuse", "glossy"})],
-            "Is Diffuse Ray": [(1, {"camera", "glossy"}), (2, {"diffuse"})],
-            "Is Glossy Ray": [(1, {"camera", "diffuse"}), (2, {"glossy"})],
-            "Is Reflection Ray": [(1, {"camera"}), (2, {"diffuse", "glossy"})],
-            "Is Shadow Ray": [(1, {"camera", "diffuse", "glossy"})],
+            "Is Camera Ray": [(2, {"camera"}), (1, {"diffuse", "glossy", "transmission"})],
+            "Is Diffuse Ray": [(1, {"camera", "glossy", "transmission"}), (2, {"diffuse"})],
+            "Is Glossy Ray": [(1, {"camera", "diffuse"}), (2, {"glossy", "transmission"})],
+            "Is Reflection Ray": [(1, {"camera", "transmission"}), (2, {"diffuse", "glossy"})],
+            "Is Transmission Ray": [(1, {"camera", "diffuse", "glossy"}), (2, {"transmission"})],
+            "Is Shadow Ray": [(1, {"camera", "diffuse", "glossy", "transmission"})],
         }
         path, add = self.tree.nodes.new("ShaderNodeLightPath"), self.tree.nodes.new("ShaderNodeMath")
         add.inputs[1].default_value = 1
@@ -565,7 +566,7 @@ class World(SceneTest):
             with self.subTest(output):
                 self.tree.links.new(path.outputs[output], add.inputs[0])
                 scene = self.gather()
-                kinds = {"camera", "diffuse", "glossy"}
+                kinds = {"camera", "diffuse", "glossy", "transmission"}
                 self.assertEqual([(w.radiance[0], kinds - w.hidden_from) for w in scene.worlds], expected)
                 self.assertEqual(scene.notes, [])
                 self.assertEqual({w.max_bounces for w in scene.worlds}, {3 if len(expected) > 1 else 1024})

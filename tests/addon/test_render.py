@@ -97,6 +97,20 @@ class Passes(RenderTest):
         statistics = json.loads(exr_attributes(run.images[0])[0]["wardmis.ViewLayer.statistics"])
         self.assertEqual(statistics["samples_per_pixel"], 64)
 
+    def test_each_technique_of_the_scene_has_a_pass(self):
+        """More than were registered, one of which the file lacks."""
+        run = self.run_blender(MULTILAYER + EVERY_PASS + WITH_PREVIEW, fake="many-lobes")
+        self.assertEqual(run.code, 0, run.output)
+        for complaint in COMPLAINTS:
+            self.assertNotIn(complaint, run.output)
+        image = read_exr(run.images[0])
+        names = ("Combined.R", "Depth.Z", "Normal.X", "Albedo.R", "Variance.R", "Allocation Cosine.X", "Allocation Light.X",
+                 "Allocation Glass.X", "Allocation Glossy.X", "Allocation Lobe 3.X")  # fmt: skip
+        for k, channel in enumerate(names):
+            pixels = image[f"ViewLayer.{channel}"]
+            for x, y in ((0, 0), (39, 0), (7, 13)):
+                self.assertAlmostEqual(float(pixels[19 - y, x]), value(k, x, y), 5, channel)
+
     def test_only_what_was_asked_for_is_in_the_file(self):
         run = self.run_blender(MULTILAYER + WITH_PREVIEW)
         self.assertEqual(self.passes_of(read_exr(run.images[0])), {"ViewLayer.Combined"})
@@ -120,7 +134,7 @@ class Passes(RenderTest):
         self.assertEqual(self.passes_of(read_exr(run.images[0])), {"ViewLayer.Combined"})
 
     def test_compositor_has_a_socket_for_each_pass(self):
-        from wardmis.passes import PASSES
+        from wardmis import passes
 
         scene = bpy.data.scenes.new("Compositor")
         scene.render.engine = "WARDMIS"
@@ -141,7 +155,11 @@ class Passes(RenderTest):
         own = layer.wardmis
         own.use_pass_albedo = own.use_pass_variance = own.use_pass_allocation = True
         # the socket of the pass Combined has been called Image since ever
-        self.assertLessEqual({p.name for p in PASSES} - {"Combined"}, sockets())
+        self.assertLessEqual({p.name for p in passes.passes_of(scene, layer)} - {"Combined"}, sockets())
+        passes.tell(scene, layer, ["Combined", "Allocation Glass", "Allocation Glossy", "Allocation Light"])
+        layer.update_render_passes()
+        self.assertLessEqual({"Allocation Glass", "Allocation Glossy", "Allocation Light"}, sockets())
+        self.assertNotIn("Allocation Cosine", sockets())
         bpy.data.scenes.remove(scene)
 
     def test_every_view_layer_is_rendered(self):
@@ -232,13 +250,19 @@ class Arguments(RenderTest):
 
     def test_bounces_reach_the_command(self):
         limits = "s.max_depth, s.max_diffuse, s.max_glossy = 6, 2, 5\n"
+        more = "s.max_transmission, s.max_transparent = 1, 3\n"
         cycles = (
             "c = scene.cycles\nc.max_bounces, c.diffuse_bounces, c.glossy_bounces = 7, 3, 0\ns.bounces = 'cycles'\n"
+            "c.transmission_bounces, c.transparent_max_bounces = 2, 5\n"
         )
         for changes, options in (
             ("", "--max-depth 8"),
             (limits, "--max-depth 6 --max-diffuse 2"),  # 5 is all of them
-            (limits + cycles, "--max-depth 8 --max-diffuse 3 --max-glossy 0"),
+            (limits + more, "--max-depth 6 --max-diffuse 2 --max-transmission 1 --max-transparent 3"),
+            (
+                limits + cycles,
+                "--max-depth 8 --max-diffuse 3 --max-glossy 0 --max-transmission 2 --max-transparent 5",
+            ),
             ("s.bounces = 'cycles'\n", "--max-depth 13 --max-diffuse 4 --max-glossy 4"),
         ):
             run = self.run_blender("s = scene.wardmis\n" + changes)

@@ -70,9 +70,9 @@ def unbiased(scene: Any, bounces: Bounces) -> Iterator[Setting]:
     yield cycles, "use_camera_cull", False
     yield cycles, "use_distance_cull", False
     yield cycles, "max_bounces", bounces.total
-    yield cycles, "transmission_bounces", bounces.total
-    yield cycles, "diffuse_bounces", min(bounces.diffuse, bounces.total)
-    yield cycles, "glossy_bounces", min(bounces.glossy, bounces.total)
+    for kind, limit in bounces.by_kind().items():
+        yield cycles, f"{kind}_bounces", limit
+    yield cycles, "transparent_max_bounces", bounces.transparent
     # Cycles moves the shadows' rays away from smooth surfaces
     for obj in scene.objects:
         owner = compat.shadow_terminator_owner(obj)
@@ -95,6 +95,7 @@ def described(scene: Any) -> dict[str, Any]:
         "diffuse_bounces",
         "glossy_bounces",
         "transmission_bounces",
+        "transparent_max_bounces",
         "sample_clamp_direct",
         "sample_clamp_indirect",
         "blur_glossy",

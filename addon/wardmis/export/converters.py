@@ -211,10 +211,10 @@ def _light_path(use: NodeUse, output: Any) -> Value | None:
     known = {
         "Is Camera Ray": ray == "camera",
         "Is Diffuse Ray": ray == "diffuse",
-        "Is Glossy Ray": ray == "glossy",
-        "Is Reflection Ray": ray != "camera",
+        "Is Glossy Ray": ray in ("glossy", "transmission"),  # what glass lets pass is both
+        "Is Reflection Ray": ray in ("diffuse", "glossy"),
         "Is Shadow Ray": False,
-        "Is Transmission Ray": False,
+        "Is Transmission Ray": ray == "transmission",
         "Is Volume Scatter Ray": False,
     }
     return None if ray is None or output.name not in known else constant(float(known[output.name]))

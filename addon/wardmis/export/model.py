@@ -194,7 +194,7 @@ class InstanceData:
     holdout: bool = False
 
 
-VISIBILITY = ("camera", "diffuse", "glossy", "shadow")
+VISIBILITY = ("camera", "diffuse", "glossy", "transmission", "shadow")
 
 
 @dataclass

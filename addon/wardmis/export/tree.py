@@ -10,7 +10,7 @@ from typing import Any
 from .. import compat
 from .context import ExportContext
 
-RAYS = ("camera", "diffuse", "glossy")  # kinds of ray that may see different skies
+RAYS = ("camera", "diffuse", "glossy", "transmission")  # kinds of ray that may see different skies
 LONGEST_CHAIN = 10_000  # of reroutes, muted nodes and borders of groups; a longer one is a circle
 
 

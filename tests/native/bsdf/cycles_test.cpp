@@ -90,13 +90,16 @@ std::vector<Lobe> lobesOf(int version, const json& s, float mu) {
 Vec integrals(const std::vector<Lobe>& lobes, Vec wo) {
   const int n = 100;
   Vec sum;
-  for (const Lobe& l : lobes) {
+  std::vector<Lobe> all;
+  for (const Lobe& l : lobes)
+    for (const Lobe& half : halves(l)) all.push_back(half);
+  for (const Lobe& l : all) {
     const int steps = isDelta(l.kind) ? 1 : n;
     for (int i = 0; i < steps; ++i)
       for (int k = 0; k < steps; ++k) {
         // 1 - u1 goes with the cube: long tails
         const double v = (i + 0.5) / steps, u = 1 - v * v * v, part = isDelta(l.kind) ? 1 : 3 * v * v;
-        const Vec wi = sample(l, wo, Vec2<double>{u, (k + 0.5) / steps});
+        const Vec wi = sample(l, wo, Vec2<double>{u, (k + 0.5) / steps}, 0.0);
         sum += weight(l, wi, wo) * Vec{1, std::max(wi.z, 0.0), 0.5 + 0.5 * wi.y} * (part / steps / steps);
       }
   }

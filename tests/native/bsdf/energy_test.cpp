@@ -16,7 +16,7 @@ using Vec = Vec3<double>;
 Vec at(double cosine) { return {std::sqrt(1 - cosine * cosine), 0, cosine}; }
 Estimate meanWeight(const Lobe& l, const Vec& wo, Random& random, int n) {
   Estimate e;
-  for (int i = 0; i < n; ++i) e.add(weight(l, sample(l, wo, random.square()), wo).x);
+  for (int i = 0; i < n; ++i) e.add(weight(l, drawn(l, wo, random), wo).x);
   return e;
 }
 
@@ -137,7 +137,7 @@ TEST(Energy, IsThatOfTheWalkFromFacetToFacet) {
                   [&](const Lobe& l) {
                     Estimate albedo, cosine;
                     for (int i = 0; i < 20000; ++i) {
-                      const Vec wi = sample(l, at(mu), random.square());
+                      const Vec wi = drawn(l, at(mu), random);
                       const double w = weight(l, wi, at(mu)).x;
                       albedo.add(w), cosine.add(w * wi.z);
                     }

@@ -39,7 +39,7 @@ struct Pair {
 };
 Pair pairOf(const Lobe& l, Random& random) {
   const Vec wo = random.above();
-  return {wo, sample(l, wo, random.square())};
+  return {wo, drawn(l, wo, random)};
 }
 
 TEST(Lobe, WeightIsValueOverDensity) {
@@ -68,9 +68,10 @@ TEST(Lobe, LiesOnItsSideAlone) {
     const double side = transmits(l.kind) ? -1 : 1;
     for (int i = 0; i < 200; ++i) {
       const Vec wo = random.above(), wi = random.above() * -side, below = -random.above();
+      EXPECT_EQ(evaluate(l, random.above() * side, below).fCos.x, 0);  // wo below
+      if (isGlass(l.kind)) continue;
       EXPECT_EQ(evaluate(l, wi, wo).fCos.x, 0);
       EXPECT_EQ(weight(l, wi, wo).x, 0);
-      EXPECT_EQ(evaluate(l, random.above() * side, below).fCos.x, 0);  // wo below
       if (l.kind != LobeKind::kPhong) {
         EXPECT_EQ(evaluate(l, wi, wo).pdf, 0);
       }
@@ -89,6 +90,7 @@ TEST(Lobe, IsReciprocal) {
       continue;
     SCOPED_TRACE(testing::PrintToString(l));
     Lobe back = l;
+    if (isGlass(l.kind)) continue;  // its halves are
     const bool through = l.kind == LobeKind::kGgxRefraction || l.kind == LobeKind::kBeckmannRefraction;
     if (through) back.eta = 1 / l.eta;
     int pairs = 0;
@@ -134,7 +136,7 @@ void wardAndPhongKeepTheirBits() {
       const WardValue<T> v = wardEvaluate(variant, wi, wo, T(1) / T(ax), T(1) / T(ay));
       EXPECT_EQ(evaluate(l, wi, wo).fCos.y, v.fCos);
       EXPECT_EQ(evaluate(l, wi, wo).pdf, v.pdf);
-      EXPECT_EQ(sample(l, wo, u), wardSample(wo, T(ax), T(ay), u));
+      EXPECT_EQ(sample(l, wo, u, T(0)), wardSample(wo, T(ax), T(ay), u));
       EXPECT_EQ(weight(l, wi, wo).z, wardWeight(variant, wi, wo));
       EXPECT_EQ(logPdf(l, wi, wo), wardLogPdf(wi, wo, T(1) / T(ax), T(1) / T(ay)));
     }
@@ -143,12 +145,41 @@ void wardAndPhongKeepTheirBits() {
     const T gamma = phongCosGamma(wi, wo), m = T(phong.a);
     EXPECT_EQ(evaluate(phong, wi, wo).fCos.x, phongEvaluate(gamma, m).f * wi.z);
     EXPECT_EQ(evaluate(phong, wi, wo).pdf, phongEvaluate(gamma, m).pdf);
-    EXPECT_EQ(sample(phong, wo, u), phongSample(wo, m, u));
+    EXPECT_EQ(sample(phong, wo, u, T(0)), phongSample(wo, m, u));
     EXPECT_EQ(weight(phong, wi, wo).x, phongWeight(gamma, wi.z, m));
   }
 }
 TEST(Lobe, WardAndPhongKeepTheirBitsInFloat) { wardAndPhongKeepTheirBits<float>(); }
 TEST(Lobe, WardAndPhongKeepTheirBitsInDouble) { wardAndPhongKeepTheirBits<double>(); }
+
+// Glass sends the light of the two lobes that it is made of, and its two densities are theirs, shared out by what a
+// facet sends to either side.
+TEST(Glass, IsItsTwoLobes) {
+  Random random(7);
+  int pairs = 0;
+  for (const Lobe& l : roughLobes()) {
+    if (!isGlass(l.kind)) continue;
+    SCOPED_TRACE(testing::PrintToString(l));
+    const std::vector<Lobe> parts = halves(l);
+    for (int i = 0; i < 1000; ++i) {
+      const Vec wo = random.above(), wi = drawn(parts[static_cast<size_t>(i % 2)], wo, random);
+      const LobeValue<double> v = evaluate(l, wi, wo);
+      Vec sum;
+      double density = 0;
+      for (const Lobe& part : parts) sum += evaluate(part, wi, wo).fCos, density += evaluate(part, wi, wo).pdf;
+      EXPECT_DOUBLE_EQ(v.fCos.x, sum.x);
+      EXPECT_DOUBLE_EQ(v.fCos.z, sum.z);
+      if (!(density > 0)) continue;
+      const auto strength = [](Vec c) { return c.x + c.y + c.z; };
+      const Vec h = wi.z > 0 ? wi + wo : refractionHalf(wi, wo, double(l.eta));
+      const double c = std::min(dot(wo, h) / length(h), 1.0), up = strength(rgb<double>(l.weight) * reflectance(l, c)),
+                   down = strength(rgb<double>(l.through) * transmittance(l, c));
+      EXPECT_NEAR(v.pdf, density * (wi.z > 0 ? up : down) / (up + down), 1e-9 * density);
+      ++pairs;
+    }
+  }
+  EXPECT_GT(pairs, 3000);
+}
 
 // Snell, Fresnel and the sum of both halves of sharp glass.
 TEST(Delta, GlassReflectsOrRefracts) {
@@ -158,14 +189,14 @@ TEST(Delta, GlassReflectsOrRefracts) {
       const Vec wo = random.above();
       Lobe l = lobe(LobeKind::kMirror, 0, 0, eta, Fresnel::kBlended, Masking::kCorrelated);
       l.f0 = gray(fresnelNormal(eta));
-      const Vec mirror = sample(l, wo, {0, 0});
+      const Vec mirror = sample(l, wo, {0, 0}, 0.0);
       EXPECT_EQ(mirror.x, -wo.x);
       EXPECT_EQ(evaluate(l, mirror, wo).pdf, 0);
       const double reflected = weight(l, mirror, wo).x;
       EXPECT_NEAR(reflected, fresnelDielectric(wo.z, double(eta)), 1e-6);
       l.kind = LobeKind::kSharpRefraction;
       EXPECT_TRUE(isDelta(l.kind) && transmits(l.kind));
-      const Vec wi = sample(l, wo, {0, 0});
+      const Vec wi = sample(l, wo, {0, 0}, 0.0);
       const double sine2 = (1 - wo.z * wo.z) / (double(eta) * eta);
       EXPECT_NEAR(length(wi), 1, 1e-12);
       if (sine2 >= 1) {
@@ -184,7 +215,7 @@ TEST(Delta, TransparentGoesStraightOn) {
   Lobe l;
   l.kind = LobeKind::kTransparent, l.weight = {0.1f, 0.2f, 0.3f};
   const Vec wo{0.6, 0, 0.8};
-  EXPECT_EQ(sample(l, wo, {0.5, 0.5}), -wo);
+  EXPECT_EQ(sample(l, wo, {0.5, 0.5}, 0.0), -wo);
   EXPECT_EQ(weight(l, -wo, wo).y, double(0.2f));
 }
 

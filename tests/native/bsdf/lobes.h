@@ -9,28 +9,11 @@
 
 namespace wardmis::test {
 
-inline constexpr const char* kKindNames[kLobeKinds] = {"lambert",
-                                                       "oren_nayar",
-                                                       "burley",
-                                                       "translucent",
-                                                       "rough_translucent",
-                                                       "ward",
-                                                       "ward_dur",
-                                                       "ward_gmd",
-                                                       "phong",
-                                                       "ggx",
-                                                       "beckmann",
-                                                       "ashikhmin_shirley",
-                                                       "clearcoat",
-                                                       "velvet",
-                                                       "schlick_sheen",
-                                                       "fibres",
-                                                       "ggx_refraction",
-                                                       "beckmann_refraction",
-                                                       "thin_transmission",
-                                                       "mirror",
-                                                       "sharp_refraction",
-                                                       "transparent"};
+inline constexpr const char* kKindNames[kLobeKinds] = {
+    "lambert",           "oren_nayar", "burley",         "translucent", "rough_translucent", "ward",
+    "ward_dur",          "ward_gmd",   "phong",          "ggx",         "beckmann",          "ashikhmin_shirley",
+    "clearcoat",         "velvet",     "schlick_sheen",  "fibres",      "ggx_refraction",    "beckmann_refraction",
+    "thin_transmission", "ggx_glass",  "beckmann_glass", "mirror",      "sharp_refraction",  "transparent"};
 inline const char* name(LobeKind kind) { return kKindNames[static_cast<int>(kind)]; }
 
 inline Rgb rgbOf(const nlohmann::json& j) { return {j[0].get<float>(), j[1].get<float>(), j[2].get<float>()}; }
@@ -88,6 +71,10 @@ inline std::vector<Lobe> roughLobes() {
       lobe(LobeKind::kBeckmannRefraction, 0.2f, 0.2f, 1.5f, blended, together),
       lobe(LobeKind::kBeckmannRefraction, 0.6f, 0.6f, 0.9f, none, apart),
       lobe(LobeKind::kThinTransmission, 0.4f, 0.4f, 1, none, together),
+      lobe(LobeKind::kGgxGlass, 0.2f, 0.2f, 1.5f, blended, together),
+      lobe(LobeKind::kGgxGlass, 0.5f, 0.2f, 0.7f, Fresnel::kTinted, apart),
+      lobe(LobeKind::kGgxGlass, 0.8f, 0.8f, 0.9f, none, apart),
+      lobe(LobeKind::kBeckmannGlass, 0.3f, 0.3f, 1.5f, Fresnel::kDielectric, together),
   };
   const auto with = [&](LobeKind kind, float a, float b) {
     Lobe l;
@@ -103,8 +90,26 @@ inline std::vector<Lobe> roughLobes() {
     const auto model = OrenNayar<float>::of(0.7f);
     all[with(kind, model.a, model.b)].f0 = {0, 0.002f, 0.05f};
   }
-  for (Lobe& l : all) l.weight = {0.5f, 0.25f, 0.75f};
+  for (Lobe& l : all) l.weight = {0.5f, 0.25f, 0.75f}, l.through = {0.3f, 0.6f, 0.2f};
   return all;
+}
+
+// A direction of the lobe; random: statistics.h's.
+template <class T = double, class Random>
+Vec3<T> drawn(const Lobe& l, Vec3<T> wo, Random& random) {
+  const Vec2<T> u = random.template square<T>();
+  return sample(l, wo, u, isGlass(l.kind) ? T(random.uniform() * (1 - 0x1p-24)) : T(0));
+}
+
+// Glass as the two lobes whose light it sends, each sampled on its own; another lobe itself.
+inline std::vector<Lobe> halves(const Lobe& l) {
+  if (!isGlass(l.kind)) return {l};
+  Lobe up = l, down = l;
+  down.weight = l.through;
+  const bool ggx = l.kind == LobeKind::kGgxGlass;
+  up.kind = ggx ? LobeKind::kGgx : LobeKind::kBeckmann;
+  down.kind = ggx ? LobeKind::kGgxRefraction : LobeKind::kBeckmannRefraction;
+  return {up, down};
 }
 
 }  // namespace wardmis::test

@@ -30,7 +30,7 @@ double albedoOf(const std::vector<Lobe>& lobes, double mu, Random& random, int n
   double sum = 0;
   for (const Lobe& l : lobes) {
     Estimate e;
-    for (int i = 0; i < n; ++i) e.add(weight(l, sample(l, wo, random.square()), wo).x);
+    for (int i = 0; i < n; ++i) e.add(weight(l, drawn(l, wo, random), wo).x);
     sum += e.mean();
   }
   return sum;
@@ -153,7 +153,7 @@ TEST(Principled, AnyInputsMakeLobes) {
             << testing::PrintToString(l);
         ASSERT_TRUE(isFinite(l.f0) && isFinite(l.edge) && std::isfinite(l.eta) && l.eta > 0 && l.ax >= 0 && l.ax <= 1)
             << testing::PrintToString(l);
-        const Vec3f wo{std::sqrt(1 - mu * mu), 0, mu}, wi = sample(l, wo, random.square<float>());
+        const Vec3f wo{std::sqrt(1 - mu * mu), 0, mu}, wi = drawn(l, wo, random);
         ASSERT_TRUE(isFinite(weight(l, wi, wo))) << testing::PrintToString(l);
       }
     }

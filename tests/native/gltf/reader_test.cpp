@@ -226,7 +226,7 @@ GlbBuilder withSeveralWorlds() {
                     {{{"radiance", {1, 2, 3}}, {"visibility", {"camera"}}},
                      {{"radiance", {0, 0, 0}}, {"texture", {{"index", other}}}},
                      {{"texture", {{"index", texture}, {"projection", "mirror-ball"}}},
-                      {"visibility", {"diffuse", "glossy"}},
+                      {"visibility", {"diffuse", "glossy", "transmission"}},
                       {"maxBounces", 2}},
                      {{"radiance", {4, 4, 4}}, {"visibility", json::array()}}}}};
   return b;

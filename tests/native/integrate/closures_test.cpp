@@ -140,7 +140,7 @@ TEST(Closures, WardsLobeIsThatOfTheShortForm) {
   EXPECT_NEAR(closures / meanOf(scene, s), 1, 0.01);
 }
 
-// Light through sheets: a shadow ray passes up to eight, and colours multiply.
+// Light through sheets: a shadow ray passes so many, and colours multiply.
 TEST(Closures, SheetsLetLightThrough) {
   for (int sheets : {1, 2, 8, 9}) {
     Scene scene = diffusePlane(4);
@@ -155,8 +155,85 @@ TEST(Closures, SheetsLetLightThrough) {
     scene.lights = {sun};
     RenderSettings s = settings();
     s.spp = 4, s.integrator = Integrator::kDirect;
-    const double through = sheets > 8 ? 0 : std::pow(0.5, sheets);
-    EXPECT_NEAR(meanOf(scene, s), through / kPi<double>, 1e-6 + 1e-5 * through) << sheets;
+    for (int most : {8, 2, 9, 0}) {
+      s.maxTransparent = most;
+      const double through = sheets > most ? 0 : std::pow(0.5, sheets);
+      EXPECT_NEAR(meanOf(scene, s), through / kPi<double>, 1e-6 + 1e-5 * through) << sheets;
+    }
+  }
+}
+
+// Sheets without an index of refraction before a glowing one: each is a transmission bounce, and B of them are
+// followed.
+TEST(Closures, TransmissionHasALimitOfItsOwn) {
+  for (const ClosureType type : {ClosureType::kRefraction, ClosureType::kGlass})
+    for (int sheets = 1; sheets <= 4; ++sheets)
+      for (int bounces : {0, 1, 2}) {
+        Scene scene = diffusePlane(4);
+        scene.materials[0].emission.value = kWhite, scene.materials[0].diffuse.value = {0, 0, 0};
+        scene.materials.push_back(material({with(closure(type), 1, 1)}));
+        for (int i = 1; i <= sheets; ++i) addPlane(scene, 1000, 1, 0.5f * static_cast<float>(i));
+        RenderSettings s = settings();
+        s.spp = 4, s.maxDiffuse = s.maxGlossy = 0, s.maxTransmission = bounces;
+        EXPECT_NEAR(meanOf(scene, s), sheets <= bounces + 1 ? 1 : 0, 1e-5) << sheets << ' ' << bounces;
+      }
+}
+
+// A plane that scatters light to below, seen from there, under what some rays do not see: translucent light and what
+// glass lets pass are for rays of transmission alone.
+TEST(Closures, WhatTransmissionSeesIsItsOwn) {
+  const auto through = [](const Closure& c, int kind, int hidden) {
+    Scene scene;
+    scene.materials = {material({c})};
+    addPlane(scene, 1000, 0);
+    lookFrom(scene, kPi<float> - 0.5f, 0.005f, 4);
+    const auto visibility = static_cast<uint8_t>(kSeenByAll & ~hidden & ~kSeenByCamera);
+    Light light;
+    light.emitted = {1, 1, 1}, light.visibility = visibility, light.toWorld.t = {0, 0, 2};
+    if (kind == 0) {
+      worldOf(scene).radiance = kWhite, worldOf(scene).visibility = visibility;
+    } else if (kind == 1) {
+      light.type = LightType::kArea, light.sizeX = light.sizeY = 4;
+      scene.lights = {light};
+    } else {
+      scene.materials.push_back(ward({0, 0, 0}, {0, 0, 0}, 0.1f, WardVariant::kWardGmd));
+      scene.materials[1].emission.value = kWhite;
+      addPlane(scene, 2, 1, 2);
+      scene.instances.back().visibility = visibility;
+    }
+    return meanOf(scene, settings());
+  };
+  for (const Closure& c : {closure(ClosureType::kTranslucent), rough(closure(ClosureType::kRefraction), 0.3f)})
+    for (int kind : {0, 1, 2}) {
+      const double all = through(c, kind, 0);
+      EXPECT_GT(all, 0.1) << kind;
+      EXPECT_NEAR(through(c, kind, kSeenByDiffuse | kSeenByGlossy) / all, 1, 0.02) << kind;
+      EXPECT_EQ(through(c, kind, kSeenByTransmission), 0) << kind;
+    }
+  // what reflects sees the same by its own rays
+  Scene scene = ball({rough(closure(ClosureType::kGlossy), 0.3f)});
+  worldOf(scene).radiance = kWhite;
+  const double all = meanOf(scene, settings());
+  worldOf(scene).visibility = kSeenByAll & ~kSeenByTransmission;
+  EXPECT_EQ(meanOf(scene, settings()), all);
+}
+
+// A technique that is called by a class of lobes is that class's on every surface, whatever other lobes are there.
+TEST(Closures, TechniquesAreThoseOfTheirClass) {
+  Scene scene = ball({rough(closure(ClosureType::kGlass), 0.2f)});
+  scene.materials[1] =
+      material({rough(closure(ClosureType::kGlossy), 0.2f), rough(closure(ClosureType::kGlass), 0.1f)});
+  addPlane(scene, 1, 1, 100);
+  worldOf(scene).radiance = kWhite;
+  ASSERT_EQ(BuiltScene(scene, 2).techniqueNames()[1], "glass");
+  for (int kind = 0; kind < 2; ++kind) {
+    const FilmBuffer film = renderScene(scene, settings());
+    std::array<uint64_t, 5> samples{};
+    for (size_t i = 0; i < film.sampleCounts.size(); ++i) samples[i % 5] += film.sampleCounts[i];
+    EXPECT_GT(samples[1], 0u) << kind;
+    EXPECT_EQ(samples[0] > 0, kind == 1) << kind;
+    EXPECT_EQ(samples[2] + samples[3], 0u) << kind;
+    scene.instances[0].visibility = 0, scene.instances[1].toWorld.t = {0, 0, -100};  // the plane in its place
   }
 }
 
@@ -168,7 +245,16 @@ TEST(Closures, HaveTheTechniquesThatTheyNeed) {
   using Names = std::vector<std::string>;
   EXPECT_EQ(names({closure(ClosureType::kDiffuse)}), (Names{"lobe", "cosine", "light"}));
   EXPECT_EQ(names({closure(ClosureType::kPrincipled)}), (Names{"lobe", "cosine", "light"}));
-  EXPECT_EQ(names({closure(ClosureType::kGlass)}), (Names{"lobe 1", "lobe 2", "lobe 3", "cosine", "light"}));
+  EXPECT_EQ(names({rough(closure(ClosureType::kGlass), 0.2f)}), (Names{"lobe", "cosine", "light"}));
+  EXPECT_EQ(names({rough(closure(ClosureType::kGlass), 0)}),
+            (Names{"glossy", "refraction", "lobe 3", "cosine", "light"}));
+  EXPECT_EQ(names({rough(closure(ClosureType::kGlass), 0.2f), closure(ClosureType::kGlossy)}),
+            (Names{"glossy", "glass", "lobe 3", "cosine", "light"}));
+  EXPECT_EQ(
+      names({closure(ClosureType::kGlossy), closure(ClosureType::kGlossy), rough(closure(ClosureType::kGlass), 0.2f)}),
+      (Names{"glossy 1", "glossy 2", "glass", "cosine", "light"}));
+  // more than there are techniques: by number, and the last are shared
+  EXPECT_EQ(names(std::vector<Closure>(7, closure(ClosureType::kGlossy)))[5], "lobe 6");
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ TEST(Interaction, RayThatLeavesDoesNotMeetItsSurface) {
           const Hit hit = accel.intersect(ray);
           if (!hit.valid()) continue;
           ++hits;
-          const Interaction x = interact<0>(scene, geometry, ray, hit);
+          const Interaction x = interact<0, 3>(scene, geometry, ray, hit);
           farthest = std::max(farthest, length(x.leave(x.geometric) - x.position));
           for (float height : {1e-4f, 1e-2f, 0.5f}) {
             const Framef f = Framef::around(x.geometric);
@@ -99,7 +99,7 @@ TEST(Interaction, FlatSurfaceKeepsItsNormalAtGrazingAngles) {
     ray.origin = Vec3f{0.1f, 0.2f, 0} - ray.direction * 2;
     const Hit hit = accel.intersect(ray);
     ASSERT_TRUE(hit.valid()) << cosine;
-    EXPECT_EQ(interact<0>(scene, geometry, ray, hit).frame.z, (Vec3f{0, 0, 1})) << cosine;
+    EXPECT_EQ((interact<0, 3>(scene, geometry, ray, hit).frame.z), (Vec3f{0, 0, 1})) << cosine;
   }
 }
 

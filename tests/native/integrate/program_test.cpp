@@ -237,5 +237,26 @@ TEST(ProgramNeeds, AreTold) {
   EXPECT_NE(describe(kNeedsPrograms), "nothing");
 }
 
+// A diffuse closure about a normal of its own is the diffuse surface: under a sky that is cos theta, 2/3 where the
+// normal is the vertical.
+TEST(ProgramRender, DiffuseClosuresAboutANormalOfTheirOwn) {
+  Scene scene = diffusePlane(4);
+  Closure c;
+  c.type = ClosureType::kDiffuse, c.normal = 0;
+  c.weight.value = {1, 1, 1};
+  c.colors = {{{1, 1, 1}, {}}};
+  c.scalars = {{0, {}}};
+  Material m;
+  setProgram(m, {{{"op", "vector-add"}, {"in", {{0, 0, 1}, {0, 0, 0}}}}}, {0});
+  m.closures = {c};
+  scene.materials = {m};
+  addCosineSky(scene);
+  RenderSettings s = settings(256);
+  for (const Allocation a : {Allocation::kEqual, Allocation::kAuto}) {
+    s.allocation = a;
+    EXPECT_NEAR(measure(renderScene(scene, s)).mean, 2.0 / 3, 0.01);
+  }
+}
+
 }  // namespace
 }  // namespace wardmis
