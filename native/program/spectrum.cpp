@@ -2,31 +2,15 @@
 #include "program/spectrum.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
-#include <iterator>
 
 namespace wardmis::spectrum {
 namespace {
 
-// Cycles' fit of black bodies' colours: red and green as a/t + b t + c, blue as a cubic, from each temperature on.
-struct Fit {
-  float from;
-  float red[3], green[3], blue[4];
-};
-constexpr Fit kFits[] = {
-    // clang-format off
-    {800, {1.61919106e+03f, -2.05010916e-03f, 5.02995757e+00f}, {-4.88999748e+02f, 6.04330754e-04f, -7.55807526e-02f}, {5.96945309e-11f, -4.85742887e-08f, -9.70622247e-05f, -4.07936148e-03f}},
-    {965, {2.48845471e+03f, -1.11330907e-03f, 3.22621544e+00f}, {-7.55994277e+02f, 3.16730098e-04f, 4.78306139e-01f}, {2.40430366e-11f, 5.55021075e-08f, -1.98503712e-04f, 2.89312858e-02f}},
-    {1167, {3.34143193e+03f, -4.86551192e-04f, 1.76486769e+00f}, {-1.02363977e+03f, 1.20223470e-04f, 9.36662319e-01f}, {-1.40949732e-11f, 1.89878968e-07f, -3.56632824e-04f, 9.10767778e-02f}},
-    {1449, {4.09461742e+03f, -1.27446582e-04f, 7.25731635e-01f}, {-1.26571316e+03f, 4.87340896e-06f, 1.27054498e+00f}, {-3.61460868e-11f, 2.84822009e-07f, -4.93211319e-04f, 1.56723440e-01f}},
-    {1902, {4.67028036e+03f, 2.91258199e-05f, 1.26703442e-01f}, {-1.42529332e+03f, -4.01150431e-05f, 1.43972784e+00f}, {-1.97075738e-11f, 1.75359352e-07f, -2.50542825e-04f, -2.22783266e-02f}},
-    {3315, {4.59509185e+03f, 2.87495649e-05f, 1.50345020e-01f}, {-1.17554822e+03f, -2.16378048e-05f, 1.30408023e+00f}, {-1.61997957e-13f, -1.64216008e-08f, 3.86216271e-04f, -7.38077418e-01f}},
-    {6365, {3.78717450e+03f, 9.35907826e-06f, 3.99075871e-01f}, {-5.00799571e+02f, -4.59832026e-06f, 1.09098763e+00f}, {6.72650283e-13f, -2.73078809e-08f, 4.24098264e-04f, -7.52335691e-01f}},
-    // clang-format on
-};
-constexpr float kColdest = 800, kHottest = 12000;
-constexpr Rgb kCold{5.413294490189271f, -0.20319390035873933f, -0.0822535242887164f};
-constexpr Rgb kHot{0.8262954810464208f, 0.9945080501520986f, 1.566307710274283f};
+constexpr double kColdest = 800, kHottest = 12000;  // K: beyond, the colour stays as it is, as in Cycles
+constexpr double kSecondRadiation = 1.438777e7;     // nm K
 
 // The CIE's colour matching functions of 1931, at 380, 385 ... 780 nm, times 10000.
 constexpr float kFirst = 380, kStep = 5;
@@ -56,17 +40,34 @@ constexpr Rgb toRgb(Vec3f xyz) {
 }
 Rgb positive(Rgb c) { return {std::max(c.x, 0.0f), std::max(c.y, 0.0f), std::max(c.z, 0.0f)}; }
 
+// Planck's law times the observer's functions.
+Rgb blackbodyAt(double inverse) {
+  double xyz[3] = {};
+  for (int i = 0; i <= kSteps; ++i) {
+    const double nm = double(kFirst) + double(kStep) * i;
+    const double radiance = std::pow(nm / 555, -5) / std::expm1(kSecondRadiation * inverse / nm);
+    for (int k = 0; k < 3; ++k) xyz[k] += kMatching[k][i] * radiance;
+  }
+  const auto share = [&](int k) { return static_cast<float>(xyz[k] / xyz[1]); };
+  return toRgb({share(0), 1, share(2)});
+}
+
 }  // namespace
 
+// By a table over 1/t, whose steps are so fine that its lines are within 1e-5.
 Rgb blackbody(float t) {
-  if (t >= kHottest) return positive(kHot);
-  if (!(t >= kColdest)) return positive(kCold);
-  const Fit* f = std::begin(kFits);
-  while (f + 1 != std::end(kFits) && t >= f[1].from) ++f;
-  const float inverse = 1 / t;
-  return positive({f->red[0] * inverse + f->red[1] * t + f->red[2],
-                   f->green[0] * inverse + f->green[1] * t + f->green[2],
-                   ((f->blue[0] * t + f->blue[1]) * t + f->blue[2]) * t + f->blue[3]});
+  constexpr int kEntries = 1024;
+  constexpr double kLow = 1 / kHottest, kStepOfInverse = (1 / kColdest - kLow) / (kEntries - 1);
+  static const std::array<Rgb, kEntries> table = [] {
+    std::array<Rgb, kEntries> colors;
+    for (int i = 0; i < kEntries; ++i) colors[static_cast<size_t>(i)] = blackbodyAt(kLow + i * kStepOfInverse);
+    return colors;
+  }();
+  const double kelvin = t > kColdest ? std::min(double(t), kHottest) : kColdest;  // also what is no number
+  const double x = std::clamp((1 / kelvin - kLow) / kStepOfInverse, 0.0, kEntries - 1.0);
+  const auto i = std::min(static_cast<size_t>(x), size_t{kEntries - 2});
+  const auto share = static_cast<float>(x - static_cast<double>(i));
+  return positive(table[i] * (1 - share) + table[i + 1] * share);
 }
 
 Rgb wavelength(float nm) {

@@ -6,7 +6,7 @@
 
 namespace wardmis::spectrum {
 
-// Of temperature t in kelvin, of about luminance 1; never negative.
+// Of temperature t in kelvin, of luminance 1; never negative.
 Rgb blackbody(float t);
 // Of light of one wavelength in nanometres.
 Rgb wavelength(float nm);
