@@ -14,7 +14,8 @@ FLOORS = [
     {"integrate"},
     {"world", "gltf"},
     {"scene"},
-    {"bsdf", "mis", "film", "program", "oiio", "codecs"},
+    {"program"},
+    {"bsdf", "mis", "film", "oiio", "codecs"},
     {"image", "pattern"},
     {"math"},
 ]

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "integrate/interaction.h"
 
+#include "program/surface.h"
+
 namespace wardmis::detail {
 
 void resolve(const Scene& scene, const Material& m, const ShadedPoint& point, Vec2f uv, Surface& surface, Rgb& emission,
@@ -81,21 +83,29 @@ Framef resolveLobes(const Scene& scene, const Material& m, const ShadedPoint& po
                              : c.type == ClosureType::kPrincipled3 ? v.scalars[principled3::kAnisotropic] > 0
                              : c.type == ClosureType::kPrincipled  ? v.scalars[principled::kAnisotropic] > 0
                                                                    : false;
-    const Vec3f n = normalOf(c.normal, point.normal), coat = normalOf(c.coatNormal, n);
+    const auto frameOf = [&](Vec3f normal) {
+      return normal == point.normal ? uint8_t{0} : surface.addFrame(Framef::around(normal), c.version);
+    };
+    // What would reflect into the surface is turned until it does not, as in Cycles; since 4.x not what is diffuse.
+    const auto reflecting = [&](Vec3f normal) { return surface::visiblyReflecting(point.geometric, point.wo, normal); };
+    const Vec3f told = normalOf(c.normal, point.normal), n = reflecting(told);
     std::array<uint8_t, 3> at{};
-    if (anisotropic || c.normal >= 0)
-      at[0] = surface.addFrame(frameAround(n, anisotropic, scalar(c.rotation), c.tangent));
-    at[1] = at[2] = at[0];
-    if (c.coatNormal >= 0) {
-      at[1] = surface.addFrame(Framef::around(coat));
-      at[2] = at[1];
-      if (c.type == ClosureType::kPrincipled) {
+    at[kBaseFrame] = anisotropic ? surface.addFrame(frameAround(n, true, scalar(c.rotation), c.tangent),
+                                                    n == point.normal ? 0 : c.version)
+                                 : frameOf(n);
+    const Vec3f dull = c.version >= 4 ? told : n;
+    const uint8_t atDiffuse = dull == point.normal ? uint8_t{0} : dull == n ? at[kBaseFrame] : frameOf(dull);
+    at[kSheenFrame] = atDiffuse;
+    if (c.type == ClosureType::kPrincipled3 || c.type == ClosureType::kPrincipled) {  // whose coat has its own normal
+      const Vec3f coat = normalOf(c.coatNormal, point.normal);
+      at[kCoatFrame] = frameOf(reflecting(coat));
+      if (c.type == ClosureType::kPrincipled && told != coat) {
         const float share = std::clamp(v.scalars[principled::kCoatWeight], 0.0f, 1.0f);
-        at[2] = surface.addFrame(Framef::around(normalize(n * (1 - share) + coat * share)));
+        at[kSheenFrame] = frameOf(normalize(told * (1 - share) + coat * share));
       }
     }
     expand(c, v, {surface.cosine(at[0]), surface.cosine(at[1]), surface.cosine(at[2])}, point.turned, [&](Lobe lobe) {
-      lobe.frame = at[lobe.frame];
+      lobe.frame = lobe.frame == kBaseFrame && isDiffuse(lobe.kind) ? atDiffuse : at[lobe.frame];
       surface.add(lobe);
     });
   }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "bsdf/bump_shadow.h"
 #include "bsdf/lobe.h"
 #include "mis/technique.h"
 #include "world/geometry.h"
@@ -27,10 +28,13 @@ class LobeSurface {
     wo_ = wo;
     addFrame(frame);
   }
-  // A frame for lobes to refer to; the last one again where there are too many.
-  uint8_t addFrame(const Framef& frame) {
+  // A frame for lobes to refer to; the last one again where there are too many. bump: the version by whose rules its
+  // normal, which is not the surface's own, is in shadow; 0: it is the own one.
+  uint8_t addFrame(const Framef& frame, int bump = 0) {
     const int i = std::min(frames_, kMostFrames - 1);
     frame_[i] = frame;
+    bump_[i] = static_cast<uint8_t>(bump);
+    if (bump > 0) ownCosine_[i] = dot(frame_[0].z, frame.z);
     frames_ = i + 1;
     return static_cast<uint8_t>(i);
   }
@@ -124,7 +128,12 @@ class LobeSurface {
       const Vec3<T> w = local(l, wi);
       if ((w.z > T(0)) != ahead) continue;
       const LobeValue<T> v = wardmis::evaluate(l, w, local(l, wo));
-      f[slot_[i]] += Rgb{static_cast<float>(v.fCos.x), static_cast<float>(v.fCos.y), static_cast<float>(v.fCos.z)};
+      const float lit = bump_[l.frame] == 0
+                            ? 1
+                            : bumpShadow(bump_[l.frame], hasSoftTerminator(l.kind), static_cast<float>(wi.z),
+                                         ownCosine_[l.frame], static_cast<float>(w.z));
+      f[slot_[i]] +=
+          Rgb{static_cast<float>(v.fCos.x), static_cast<float>(v.fCos.y), static_cast<float>(v.fCos.z)} * lit;
       if (slot_[i] != kCosine) p[slot_[i]] += share_[i] * static_cast<float>(v.pdf);
     }
   }
@@ -208,6 +217,8 @@ class LobeSurface {
   std::array<uint8_t, kMostLobes> slot_;
   std::array<float, kMostLobes> share_;
   std::array<Framef, kMostFrames> frame_;
+  std::array<uint8_t, kMostFrames> bump_;
+  std::array<float, kMostFrames> ownCosine_;  // of the frame's normal and the surface's own
   std::array<float, K - 1> strength_;
   std::array<bool, K - 1> delta_;
   std::array<uint8_t, K - 1> reflection_;

@@ -288,6 +288,7 @@ inline constexpr std::array brick{
   X(kNormalMapObject, "normal-map-object", kVector, "vn", normalMap, kReadsObject) \
   X(kNormalMapWorld, "normal-map-world", kVector, "vn", normalMap, kReadsNothing) \
   X(kBump, "bump", kVector, "nnnnnv", bump, kReadsShift) \
+  X(kBelowLayers, "below-layers", kVector, "nnnvnnvvv", version, kReadsNothing) \
   /* colours */ \
   X(kMix, "mix", kVector, "nvv", mix, kReadsNothing) \
   X(kMixAdd, "mix-add", kVector, "nvv", mix, kReadsNothing) \

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "program/run.h"
 
+#include "program/layers.h"
 #include "program/operands.h"
 #include "program/patterns.h"
 #include "program/place.h"
@@ -332,6 +333,14 @@ void run(const Program& program, const ShadingContext& c, const TextureAccess& t
       case kBump:
         o.set(surface::bump(c, o.n(0), o.n(1), o.n(2), o.n(3), o.n(4), o.v(5), o.number(0), o.word(1)));
         break;
+      case kBelowLayers: {
+        Principled p;
+        p.version = static_cast<int>(o.word(0));
+        p.coatWeight = o.n(0), p.coatRoughness = o.n(1), p.coatIor = o.n(2), p.coatTint = o.v(3);
+        p.sheenWeight = o.n(4), p.sheenRoughness = o.n(5), p.sheenTint = o.v(6);
+        o.set(belowLayers(c, p, o.v(7), o.v(8)));
+        break;
+      }
       case kMix:
         o.set(o.blendEach([](float t, float a, float b) { return a + t * (b - a); }));
         break;

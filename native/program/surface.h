@@ -68,7 +68,7 @@ inline Vec3f normalMapFixed(const ShadingContext& c, bool object, Rgb color, flo
   return strengthened(c, c.backfacing ? -n : n, strength);
 }
 
-// n bent towards the true normal just so far that the view's reflection leaves the surface (Blender 3.4).
+// n bent towards the true normal just so far that the view's reflection leaves the surface, as Cycles has it.
 inline Vec3f visiblyReflecting(Vec3f trueNormal, Vec3f incoming, Vec3f n) {
   const float iz = dot(incoming, trueNormal), least = std::min(0.9f * iz, 0.01f);
   if (dot(trueNormal, n * (2 * dot(n, incoming)) - incoming) >= least) return n;

@@ -587,6 +587,8 @@ class Files(unittest.TestCase):
         self.assertEqual(reasons(type="glossy", distribution="multi-ggx", version=4), ["fog"])
         self.assertEqual(reasons(type="ward")[0], "WardMIS shows Ward's reflection, Cycles Beckmann's, of material 'A'")
         self.assertIn("from facet to facet", reasons(type="principled", distribution="multi-ggx", version=3)[0])
+        self.assertEqual(reasons(type="principled", version=3, clearcoat={"value": 0.0}), ["fog"])
+        self.assertIn("clearcoat", reasons(type="principled", version=3, clearcoat={"value": 0.5})[0])
         self.assertIn("Ashikhmin", reasons(type="glossy", distribution="ashikhmin-shirley")[0])
 
     def test_checkpoints(self):

@@ -228,6 +228,7 @@ class NotUnderstood(MaterialCase):
             ("ShaderNodeHoldout", "black"),
             ("ShaderNodeSubsurfaceScattering", "diffuse"),
             ("ShaderNodeBsdfToon", "diffuse"),
+            ("ShaderNodeBsdfHairPrincipled", "diffuse"),
         ):
             with self.subTest(kind):
                 self.tree.nodes.remove(self.tree.nodes[-1])
@@ -329,6 +330,51 @@ class NotUnderstood(MaterialCase):
                 with self.subTest(name):
                     self.assertIn(name, NODES | NEUTRAL)
                     self.assertIn(name, CONVERTERS | NEUTRAL)
+
+    def test_parts_of_shaders_that_are_left_out_are_named_where_they_are_there(self):
+        for kind, name, words in (
+            ("ShaderNodeBsdfPrincipled", "Subsurface", "rendered as diffuse"),
+            ("ShaderNodeBsdfPrincipled", "Subsurface Weight", "rendered as diffuse"),
+            ("ShaderNodeBsdfPrincipled", "Thin Film Thickness", "left out"),
+            ("ShaderNodeBsdfGlass", "Thin Film Thickness", "left out"),
+            ("ShaderNodeBsdfMetallic", "Thin Film Thickness", "left out"),
+        ):
+            node = self.node(kind) if hasattr(bpy.types, kind) else None
+            if node is None or name not in node.inputs:
+                continue
+            with self.subTest(f"{kind} {name}"):
+                self.context.notes.clear()
+                self.export(node)
+                self.assertEqual(self.context.notes, [])
+                node.inputs[name].default_value = 0.5
+                self.export()
+                self.assertEqual(len(self.context.notes), 1)
+                self.assertNoted(f"has a '{name}'" if "Film" in name else f"has '{name}'", words)
+                if "Thin Wall" in node.inputs and "Film" not in name:
+                    node.inputs["Thin Wall"].default_value = True
+                    self.context.notes.clear()
+                    self.assertIs(self.export().closures[0].parameters["thinWall"], True)
+                    self.assertEqual(self.context.notes, [])
+
+    def test_metals(self):
+        if not hasattr(bpy.types, "ShaderNodeBsdfMetallic"):
+            self.skipTest("came with Blender 4.3")
+        metal = self.node(
+            "ShaderNodeBsdfMetallic", Base_Color=(0.9, 0.6, 0.3, 1), Edge_Tint=(1, 0.9, 0.8, 1), Roughness=0.3
+        )
+        metal.distribution, metal.fresnel_type = "MULTI_GGX", "F82"
+        (f82,) = self.closures(metal)
+        self.assertInputs(f82, baseColor=(0.9, 0.6, 0.3), specularTint=(1, 0.9, 0.8), metallic=1.0, roughness=0.3)
+        self.assertEqual(self.context.notes, [])
+        # without extinction it is a dielectric: of index 1.5, 0.04 straight on
+        metal.fresnel_type = "PHYSICAL_CONDUCTOR"
+        metal.inputs["IOR"].default_value, metal.inputs["Extinction"].default_value = [1.5] * 3, [0.0] * 3
+        (physical,) = self.export().closures
+        self.assertNoted("physical Fresnel")
+        inside = math.sqrt(1 - (1 - 1 / 49) / 2.25)
+        s, t = (1 / 7 - 1.5 * inside) / (1 / 7 + 1.5 * inside), (inside - 1.5 / 7) / (inside + 1.5 / 7)
+        edge = 0.5 * (s * s + t * t) / (0.04 + 0.96 * (6 / 7) ** 5)
+        self.assertInputs(physical, baseColor=[0.04] * 3, specularTint=[edge] * 3)
 
     def test_volume_and_displacement_are_noted(self):
         diffuse = self.node("ShaderNodeBsdfDiffuse")
@@ -535,6 +581,14 @@ class Values(MaterialCase):
         data = self.export(diffuse)
         places = [o.get("shift", "none") for o in data.program.operations if o["op"] == "generated"]
         self.assertEqual(sorted(places), ["none", "x", "y"])
+        self.assertEqual(data.program.operations[data.closures[0].normal.result]["op"], "bump")
+
+    def test_ward_with_a_normal_keeps_its_short_form(self):
+        ward = self.node("WardBSDFNode")
+        self.link(self.node("ShaderNodeBump"), ward, "Normal")
+        self.link(self.node("ShaderNodeTexNoise"), self.tree.nodes["Bump"], "Height")
+        data = self.export(ward)
+        self.assertEqual(data.closures, [])
         self.assertEqual(data.program.operations[data.normal.result]["op"], "bump")
 
     def test_uv_mapping(self):

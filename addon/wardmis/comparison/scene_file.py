@@ -13,6 +13,7 @@ from typing import Any
 EXTENSION = "WARDMIS_scene"
 WARD = "WardMIS shows Ward's reflection, Cycles Beckmann's"
 WALK = "WardMIS shows GGX whose lost energy is added evenly, Cycles before 4.0 light that walks from facet to facet"
+COAT = "WardMIS shows the clearcoat's own light, Cycles before 4.0 draws its directions by another density than it divides by"
 ASHIKHMIN = (
     "WardMIS shows Ashikhmin and Shirley's reflection, of which Cycles' sampling leaves some out at grazing angles"
 )
@@ -47,6 +48,8 @@ def _differences(surface: dict[str, Any]) -> set[str]:
         found |= {WARD} if closure["type"] == "ward" else set()
         distribution = closure.get("distribution")
         found |= {WALK} if distribution == "multi-ggx" and closure.get("version") == 3 else set()
+        coat = closure.get("clearcoat", {})
+        found |= {COAT} if coat.get("value", 0) != 0 else set()
         found |= {ASHIKHMIN} if distribution == "ashikhmin-shirley" else set()
     return found
 

@@ -234,16 +234,13 @@ class _Encoder:
         }
 
     def _core_material(self, material: MaterialData) -> dict[str, Any]:
-        """What other glTF viewers show: a metal where the specular part is larger, else a plastic."""
-        base = np.clip(np.add(material.diffuse.value, material.specular.value), 0, 1)
-        metallic = sum(material.specular.value) > sum(material.diffuse.value)
-        alpha = math.sqrt(material.alpha_x.value * material.alpha_y.value)
+        """What other glTF viewers show."""
+        base, texture, metallic, roughness = _plain_look(material)
         pbr: dict[str, Any] = {
-            "baseColorFactor": [*base.tolist(), 1.0],
-            "metallicFactor": 1.0 if metallic else 0.0,
-            "roughnessFactor": min(1.0, math.sqrt(alpha)) if any(material.specular.value) else 1.0,
+            "baseColorFactor": [*np.clip(base, 0, 1).tolist(), 1.0],
+            "metallicFactor": min(max(metallic, 0.0), 1.0),
+            "roughnessFactor": min(max(roughness, 0.0), 1.0),
         }
-        texture = (material.specular if metallic else material.diffuse).texture
         if texture is not None and self._texture_is_core[texture.index]:
             pbr["baseColorTexture"] = {"index": texture.index}
         core: dict[str, Any] = {"pbrMetallicRoughness": pbr, "doubleSided": True}
@@ -433,6 +430,34 @@ def _texture_use(use: TextureUse, scalar: bool) -> dict[str, Any]:
     if tuple(use.transform) != IDENTITY_TRANSFORM:
         result["transform"] = list(use.transform)
     return result
+
+
+def _plain_look(material: MaterialData) -> tuple[Any, TextureUse | None, float, float]:
+    """Colour, its texture, metallic and roughness: a metal where the specular part is larger, else a plastic; of closures the strongest."""
+    if not material.closures:
+        metallic = float(sum(material.specular.value) > sum(material.diffuse.value))
+        color = material.specular if metallic else material.diffuse
+        alpha = math.sqrt(material.alpha_x.value * material.alpha_y.value)
+        roughness = math.sqrt(alpha) if any(material.specular.value) else 1.0
+        return np.add(material.diffuse.value, material.specular.value), color.texture, metallic, roughness
+
+    def color_of(closure: ClosureData) -> ColorInput:
+        given: ColorInput | None = closure.inputs.get("baseColor", closure.inputs.get("color"))
+        return given or ColorInput((0.8, 0.8, 0.8))
+
+    def number(closure: ClosureData, name: str, default: float) -> float:
+        given = closure.inputs.get(name)
+        return default if given is None or given.result is not None else float(given.value)
+
+    def strength(closure: ClosureData) -> float:
+        weight = closure.weight.value if closure.weight else (1.0, 1.0, 1.0)
+        return float(np.dot(weight, color_of(closure).value))
+
+    most = max(material.closures, key=strength)
+    color = color_of(most)
+    alpha = number(most, "alphaX", number(most, "alpha", 1.0))
+    metallic = number(most, "metallic", 1.0 if most.type in {"glossy", "ward"} else 0.0)
+    return color.value, color.texture, metallic, number(most, "roughness", math.sqrt(max(alpha, 0.0)))
 
 
 def _closure(closure: ClosureData) -> dict[str, Any]:

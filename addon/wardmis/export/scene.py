@@ -17,15 +17,17 @@ from .image import export_image
 from .light import export_light
 from .material import export_material
 from .mesh import Geometry, Wanted, assemble, gather_geometry, transformed, wanted_of
-from .model import VISIBILITY, ColorInput, InstanceData, MaterialData, ScalarInput, SceneData
+from .model import VISIBILITY, ClosureData, ColorInput, InstanceData, MaterialData, ScalarInput, SceneData
 from .motion import Motion, Opening, SetFrame, at_its_own_frame_again, go_to, opening_of, shutter_of
 from .world import export_worlds
 
 NO_MATERIAL = MaterialData("(no material)", diffuse=ColorInput((0.8, 0.8, 0.8)))  # as Cycles shows it
-if compat.NO_MATERIAL_IS_PRINCIPLED:  # of roughness 0.5 and IOR 1.5
-    NO_MATERIAL.diffuse = ColorInput((0.768, 0.768, 0.768))  # below the specular reflection
-    NO_MATERIAL.specular = ColorInput((0.04, 0.04, 0.04))
-    NO_MATERIAL.alpha_x = NO_MATERIAL.alpha_y = ScalarInput(0.25)
+if compat.NO_MATERIAL_IS_PRINCIPLED:
+    _inputs = {"baseColor": NO_MATERIAL.diffuse, "roughness": ScalarInput(0.5), "ior": ScalarInput(1.5)}
+    _parameters = {"version": compat.CYCLES, "distribution": "multi-ggx"}
+    NO_MATERIAL = MaterialData(
+        NO_MATERIAL.name, closures=[ClosureData("principled", None, _inputs, _parameters, None, None, None)]
+    )
 
 # their surfaces arrive as meshes of their own in the depsgraph
 SEEN_AS_MESHES = {"CURVE", "SURFACE", "META", "FONT"}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reflections that are Ward's here and another model's in Cycles: how far apart they may be, and that no light is lost."""
+"""Ward's reflection, which is another model's in Cycles: how far apart they may be, and that no light is lost; others beside it."""
 
 import bpy
 from stage import add as node
@@ -48,7 +48,7 @@ def ward_smooth():
     ward(Diffuse_Color=(0.3, 0.2, 0.1, 1), Specular_Color=(0.3, 0.3, 0.3, 1), Alpha_X=0.05, Alpha_Y=0.05)
 
 
-@scene(within=0.2, why=OTHER_MODEL)
+@scene
 def glossy_beckmann():
     things(
         "BsdfGlossy" if bpy.app.version < (4, 0) else "BsdfAnisotropic",
@@ -58,12 +58,12 @@ def glossy_beckmann():
     )
 
 
-@scene(within=0.3, why=OTHER_MODEL)
+@scene
 def principled():
     things("BsdfPrincipled", Base_Color=(0.6, 0.3, 0.2, 1), Roughness=0.5)
 
 
-@scene(within=0.3, why=OTHER_MODEL)
+@scene
 def principled_metal():
     things("BsdfPrincipled", Base_Color=(0.8, 0.6, 0.3, 1), Roughness=0.4, Metallic=1.0)
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "bsdf/dielectric.h"
 #include "math/number.h"
 #include "programs.h"
 
@@ -193,6 +194,30 @@ TEST(Place, NormalMaps) {
   c.backfacing = false;
   c.toWorld = {{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}};
   expectNear(op("normal-map-object", {{0.5, 0.5, 1}, 1}), {0, 0, 1}, c);
+}
+
+TEST(Place, LayersTakeLightFromBelow) {
+  ShadingContext c;
+  c.trueNormal = c.normal = {0, 0, 1};
+  c.incoming = {0, 0.6f, 0.8f};
+  const json white = {1, 1, 1}, up = {0, 0, 1};
+  const auto layers = [&](double coat, double ior, const json& tint, double sheen, int version = 4) {
+    return op("below-layers", {coat, 0.1, ior, tint, sheen, 0.5, white, up, up}, {{"version", version}});
+  };
+  expectNear(layers(0, 1.5, white, 0), {1, 1, 1}, c);
+  // 4.3: what Fresnel's formula leaves; the tint once more, as the way through the coat is longer
+  const double f = fresnelDielectric(0.8, 1.5), longer = 1 / std::sqrt(1 - 0.36 / 2.25);
+  expectNear(layers(1, 1.5, white, 0), {1 - f, 1 - f, 1 - f}, c);
+  expectNear(layers(0.5, 1.5, white, 0), {1 - f / 2, 1 - f / 2, 1 - f / 2}, c);
+  expectNear(layers(1, 1.5, {0.5, 1, 1}, 0), {(1 - f) * std::pow(0.5, longer), 1 - f, 1 - f}, c);
+  // sheen reflects something, the more the flatter the view, and 5.2's coat also what its facets reflect again
+  const auto of = [&](const json& o) { return double(values(o, c)[0]); };
+  const double seen = of(layers(0, 1.5, white, 1));
+  EXPECT_GT(seen, 0.5);
+  EXPECT_LT(seen, 0.99);
+  EXPECT_NEAR(of(layers(1, 1.5, white, 0, 5)), 1 - f, 0.02);
+  c.incoming = {0, 0.98f, 0.199f};
+  EXPECT_LT(of(layers(0, 1.5, white, 1)), seen);
 }
 
 TEST(Place, BumpIsTheNormalOfTheRaisedSurface) {

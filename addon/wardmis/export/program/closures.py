@@ -10,7 +10,7 @@ from typing import Any
 
 from ... import compat
 from ..tree import NodeUse
-from .builder import Value, is_zero
+from .builder import Value, is_constant, is_zero
 from .reader import Reader
 
 WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
@@ -158,6 +158,7 @@ def _glossy(use: NodeUse, s: Shading, weight: Value) -> None:
 def _refractive(kind: str) -> Callable[[NodeUse, Shading, Value], None]:
     def read(use: NodeUse, s: Shading, weight: Value) -> None:
         p = s.p
+        _note_thin_film(use, p)
         s.add(
             use,
             kind,
@@ -216,19 +217,41 @@ def _as_diffuse(use: NodeUse, s: Shading, weight: Value) -> None:
 
 
 def _metallic(use: NodeUse, s: Shading, weight: Value) -> None:
-    use.note("is not supported; rendered as glossy, of its colour")
+    """The metal of the Principled shader."""
     p = s.p
-    alpha = _square(p, p.read(use, "Roughness"))
-    color = p.read(use, "Base Color")
-    s.add(
-        use,
-        "glossy",
-        weight,
-        {"distribution": "ggx", "version": compat.CYCLES},
-        color=color,
-        alphaX=alpha,
-        alphaY=alpha,
-    )
+    if use.node.fresnel_type == "F82":
+        color, edge = p.read(use, "Base Color"), p.read(use, "Edge Tint")
+    else:
+        use.note("has a physical Fresnel; what it reflects at 0 and 82 degrees is rendered, and between as F82 has it")
+        color, edge = _conductor(p.read(use, "IOR"), p.read(use, "Extinction"))
+    if use.node.distribution == "BECKMANN":
+        use.note("has facets by Beckmann, which is not supported; GGX is rendered")
+    _note_thin_film(use, p)
+    inputs = {"baseColor": color, "specularTint": edge, "metallic": 1.0, "roughness": p.read(use, "Roughness")}
+    tangent = _anisotropic(use, p, inputs, "Anisotropy", "Rotation")
+    parameters = {"distribution": "multi-ggx" if use.node.distribution == "MULTI_GGX" else "ggx"}
+    s.closures.append(Closure(use, "principled", weight, inputs, parameters, p.linked(use, "Normal"), tangent))
+
+
+def _conductor(n: Value, k: Value) -> tuple[Value, Value]:
+    """Reflectances of a metal with this index and extinction: straight on, and at a cosine of 1/7 over Schlick's there."""
+    if not (is_constant(n) and is_constant(k)):
+        return (0.8, 0.8, 0.8), WHITE
+    c = 1.0 / 7.0
+
+    def channel(n: float, k: float) -> tuple[float, float]:
+        normal = ((n - 1) ** 2 + k * k) / ((n + 1) ** 2 + k * k)
+        sin2 = 1 - c * c
+        t = n * n - k * k - sin2
+        r = math.sqrt(t * t + 4 * n * n * k * k)
+        twice = 2 * c * math.sqrt(max(0.5 * (r + t), 0.0))
+        s = (r + c * c - twice) / (r + c * c + twice)
+        q = c * c * r + sin2 * sin2
+        flat = 0.5 * s * (1 + (q - twice * sin2) / (q + twice * sin2))
+        return normal, min(flat / (normal + (1 - normal) * (1 - c) ** 5), 1.0)
+
+    normal, edge = zip(*map(channel, n, k))  # type: ignore[arg-type]
+    return normal, edge
 
 
 def _emission(use: NodeUse, s: Shading, weight: Value) -> None:
@@ -244,8 +267,6 @@ PRINCIPLED_3 = {
     "specular": "Specular",
     "specularTint": "Specular Tint",
     "roughness": "Roughness",
-    "anisotropic": "Anisotropic",
-    "rotation": "Anisotropic Rotation",
     "sheen": "Sheen",
     "sheenTint": "Sheen Tint",
     "clearcoat": "Clearcoat",
@@ -265,8 +286,6 @@ PRINCIPLED_4 = {
     "subsurfaceAnisotropy": "Subsurface Anisotropy",
     "specularIorLevel": "Specular IOR Level",
     "specularTint": "Specular Tint",
-    "anisotropic": "Anisotropic",
-    "rotation": "Anisotropic Rotation",
     "transmissionWeight": "Transmission Weight",
     "coatWeight": "Coat Weight",
     "coatRoughness": "Coat Roughness",
@@ -276,39 +295,59 @@ PRINCIPLED_4 = {
     "sheenRoughness": "Sheen Roughness",
     "sheenTint": "Sheen Tint",
 }
-SPECIAL = {  # what is rendered otherwise, where it is not zero
-    "Subsurface": "subsurface scattering is rendered as diffuse",
-    "Subsurface Weight": "subsurface scattering is rendered as diffuse",
-    "Thin Film Thickness": "thin films are not supported; it is left out",
-}
+
+
+def _note_thin_film(use: NodeUse, p: Reader) -> None:
+    if use.has("Thin Film Thickness") and not is_zero(p.read(use, "Thin Film Thickness")):
+        use.note("has a 'Thin Film Thickness', which is not supported; it is left out")
+
+
+def _anisotropic(use: NodeUse, p: Reader, inputs: dict[str, Value], amount: str, rotation: str) -> Value | None:
+    """Adds what it takes to the inputs of the Principled shader, and returns the tangent."""
+    anisotropic = p.read(use, amount)
+    if is_zero(anisotropic):
+        return None
+    inputs |= {"anisotropic": anisotropic, "rotation": p.multiply(p.read(use, rotation), 2.0 * math.pi)}
+    return _tangent(use, p)
 
 
 def _principled(use: NodeUse, s: Shading, weight: Value) -> None:
     p = s.p
     names = PRINCIPLED_3 if compat.CYCLES == 3 else PRINCIPLED_4
-    for name, what in SPECIAL.items():
-        if use.has(name) and not is_zero(p.read(use, name)):
-            use.note(f"has '{name}': {what}")
+    thin = use.has("Thin Wall") and p.number(use, "Thin Wall") != 0.0
+    below = "Subsurface" if compat.CYCLES == 3 else "Subsurface Weight"
+    if not thin and not is_zero(p.read(use, below)):
+        use.note(f"has '{below}', which is not supported; it is rendered as diffuse")
+    _note_thin_film(use, p)
     inputs = {ours: p.read(use, theirs) for ours, theirs in names.items() if use.has(theirs)}
-    turn, tangent = inputs.pop("rotation"), None
-    if not is_zero(inputs["anisotropic"]):
-        inputs["rotation"], tangent = p.multiply(turn, 2.0 * math.pi), _tangent(use, p)
-    parameters: dict[str, Any] = _distribution(use)
+    tangent = _anisotropic(use, p, inputs, "Anisotropic", "Anisotropic Rotation")
+    parameters = _distribution(use)
+    if thin:
+        parameters["thinWall"] = True
     coat = "Clearcoat Normal" if compat.CYCLES == 3 else "Coat Normal"
     coat_normal = p.linked(use, coat)
     if coat_normal is not None:
         parameters["coatNormal"] = coat_normal
     alpha = p("clamp", p.read(use, "Alpha"), 0.0, 1.0)
-    below = weight
+    opaque = weight
     if compat.CYCLES == 3:
         through = p.multiply(weight, p.complement(alpha))
         if not is_zero(through):
             s.closures.append(Closure(use, "transparent", through, {"color": WHITE}))
-        below = p.multiply(weight, alpha)
-    if not is_zero(below):
+        opaque = p.multiply(weight, alpha)
+    if not is_zero(opaque):
         normal = p.linked(use, "Normal")
-        s.closures.append(Closure(use, "principled", below, inputs, parameters, normal, tangent))
+        s.closures.append(Closure(use, "principled", opaque, inputs, parameters, normal, tangent))
     light = p.multiply(p.read(use, compat.PRINCIPLED_EMISSION), p.read(use, "Emission Strength"))
+    if (
+        compat.CYCLES >= 4
+        and not is_zero(light)
+        and not (is_zero(inputs["coatWeight"]) and is_zero(inputs["sheenWeight"]))
+    ):
+        layers = [inputs[name] for name in ("coatWeight", "coatRoughness", "coatIor", "coatTint")]
+        layers += [inputs[name] for name in ("sheenWeight", "sheenRoughness", "sheenTint")]
+        normals = [p("normal") if given is None else given for given in (p.linked(use, "Normal"), coat_normal)]
+        light = p("vector-multiply", light, p("below-layers", *layers, *normals, version=compat.CYCLES))
     s.emit(light, p.multiply(weight, alpha))
 
 

@@ -34,6 +34,7 @@ _TABLE = {
     "vvvn>v": "vector-rotate-axis",
     "vvvv>v": "mapping-point mapping-texture",
     "nnnnnv>v": "bump",
+    "nnnvnnvvv>v": "below-layers",
     "nnnnv>v": "hue-saturation",
     "vnn>v": "bright-contrast magic",
     "nv>v": "invert curves",

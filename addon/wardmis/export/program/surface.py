@@ -112,7 +112,10 @@ def material_of(name: str, shading: Shading) -> MaterialData:
 def _short(name: str, p: Reader, closures: list[Closure]) -> MaterialData | None:
     wards = [c for c in closures if c.type == "ward"]
     simple = all(c.type == "ward" or (c.type == "diffuse" and "roughness" not in c.inputs) for c in closures)
-    if not simple or len({c.normal for c in closures}) > 1 or len(set(map(_shape, wards))) > 1:
+    normals = {c.normal for c in closures}
+    if not simple or len(normals) > 1 or len(set(map(_shape, wards))) > 1:
+        return None
+    if not wards and normals - {None}:  # which Cycles' rules for light at other normals are for
         return None
     if wards and not is_constant(wards[0].inputs["rotation"]):
         return None

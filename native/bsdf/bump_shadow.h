@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is left of light at a normal that is not the surface's own (bump, normal map), so that none leaks round to the
+// back and the terminator is soft: as Cycles 3.4 and 4.3 (3, 4), after Chiang et al. 2019, and 5.2 (5) have it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "bsdf/lobe.h"
+
+namespace wardmis {
+
+// Which lobes Cycles counts as diffuse there.
+constexpr bool hasSoftTerminator(LobeKind kind) {
+  return kind <= LobeKind::kRoughTranslucent || kind == LobeKind::kSchlickSheen || kind == LobeKind::kFibres;
+}
+
+// Cosines: of the surface's own normal and the light, of both normals, of the lobe's normal and the light.
+inline float bumpShadow(int version, bool soft, float ownLight, float ownLobe, float lobeLight) {
+  if (version >= 5) {
+    if (ownLight * ownLobe * lobeLight < 0) return 0;
+    const float light = std::abs(ownLight), turned = std::abs(ownLobe);
+    if (!soft || light >= 1 || turned >= 1) return 1;
+    if (light < 1e-6f) return 0;
+    // masking of GGX facets as rough as the normal is turned
+    const float alpha2 = std::clamp(0.125f * (1 / (turned * turned) - 1), 0.0f, 1.0f);
+    return 2 / (1 + std::sqrt(1 + alpha2 * (1 / (light * light) - 1)));
+  }
+  if (!soft) return 1;
+  const float below = lobeLight * ownLobe, g = below != 0 ? ownLight / below : 0;
+  if (g >= 1) return 1;
+  return g < 0 ? 0 : g * (1 + g * (1 - g));
+}
+
+}  // namespace wardmis

@@ -1,0 +1,448 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Cycles' shaders: glass, alpha, gloss, Principled ..., each on a ball of its own before a checkered wall, under a lamp and a sky."""
+
+import random
+
+import numpy as np
+from stage import add, ball, camera, image, lamp, material, mesh, scene, sheet, sky
+from wardmis import compat
+
+COLUMNS, ROWS = 4, 3
+BOUNCES = 6
+OLD = compat.CYCLES == 3
+GLOSSY = "BsdfGlossy" if OLD else "BsdfAnisotropic"
+
+
+def on_balls(*builders):
+    """Of each shader that `builder(tree)` returns the socket of, at most 12, a ball."""
+    assert len(builders) <= COLUMNS * ROWS
+    for number, build in enumerate(builders):
+        of, tree, output = material()
+        tree.links.new(build(tree), output.inputs["Surface"])
+        made = ball(of, radius=0.42, fineness=40)
+        made.location = number % COLUMNS - (COLUMNS - 1) / 2, 0, (ROWS - 1) / 2 - number // COLUMNS
+        made.rotation_euler = 0.4, 0.5, 0.6
+    room()
+
+
+def room():
+    """A checkered wall behind y = 0, an orthographic camera before it, light from all around."""
+    dark, tree, output = material("Wall")
+    checks = add(tree, "TexChecker", Scale=9, Color1=(0.8, 0.75, 0.6, 1), Color2=(0.1, 0.15, 0.2, 1))
+    tree.links.new(add(tree, "TexCoord").outputs["UV"], checks.inputs["Vector"])
+    shader = add(tree, "BsdfDiffuse", Color=checks.outputs["Color"])
+    tree.links.new(shader.outputs[0], output.inputs["Surface"])
+    wall = sheet(dark, size=3)
+    wall.location, wall.rotation_euler = (0, 1, 0), (1.5707964, 0, 0)
+    v, u = (np.mgrid[0:8, 0:16] + 0.5) / np.array([8, 16])[:, None, None]
+    pixels = np.stack([0.1 + 0.4 * v, 0.3 + 0.2 * np.sin(6.2831853 * u), 0.6 - 0.3 * v], axis=-1)
+    world = sky((1, 1, 1))
+    texture = add(world, "TexEnvironment", {"image": image("Sky", pixels, floats=True)})
+    world.links.new(texture.outputs["Color"], world.nodes["Background"].inputs["Color"])
+    lamp("AREA", (-3, -5, 4), 350, (1, 0.9, 0.8), target=(0, 0, 0), size=4)
+    seen = camera((0, -6, 0), (0, 0, 0))
+    seen.data.type, seen.data.ortho_scale = "ORTHO", 4
+
+
+def shader(kind, settings=None, **inputs):
+    """Of one node. An input that this Blender's node lacks is an error, as is every other misspelt one."""
+    return lambda tree: add(tree, kind, settings, **inputs).outputs[0]
+
+
+def mixed(factor, first, second):
+    """`factor`: a number, or what makes a socket."""
+
+    def build(tree):
+        node = tree.nodes.new("ShaderNodeMixShader")
+        if callable(factor):
+            tree.links.new(factor(tree), node.inputs[0])
+        else:
+            node.inputs[0].default_value = factor
+        for at, part in enumerate((first, second), 1):
+            if part is not None:
+                tree.links.new(part(tree), node.inputs[at])
+        return node.outputs[0]
+
+    return build
+
+
+def added(*parts):
+    def build(tree):
+        node = tree.nodes.new("ShaderNodeAddShader")
+        for at, part in enumerate(parts):
+            tree.links.new(part(tree), node.inputs[at])
+        return node.outputs[0]
+
+    return build
+
+
+def rgba(r, g, b):
+    return (r, g, b, 1)
+
+
+AMBER, SEA, ROSE, WHITE = rgba(0.9, 0.7, 0.3), rgba(0.4, 0.8, 0.9), rgba(0.9, 0.4, 0.5), rgba(0.95, 0.95, 0.95)
+
+
+# ---- glass ----------------------------------------------------------------------------------------------------------
+
+GLASSES = ("GGX", "BECKMANN", "MULTI_GGX")
+
+
+def glass(distribution, roughness, **inputs):
+    return shader("BsdfGlass", {"distribution": distribution}, Roughness=roughness, **inputs)
+
+
+def refraction(distribution, roughness, **inputs):
+    return shader("BsdfRefraction", {"distribution": distribution}, Roughness=roughness, **inputs)
+
+
+@scene(bounces=BOUNCES)
+def sharp_glass():
+    on_balls(
+        glass("GGX", 0, IOR=1.5, Color=WHITE),
+        glass("BECKMANN", 0, IOR=1.5, Color=AMBER),
+        glass("MULTI_GGX", 0, IOR=1.1, Color=SEA),
+        glass("GGX", 0, IOR=1.0, Color=ROSE),
+        glass("GGX", 0, IOR=0.8, Color=WHITE),
+        glass("GGX", 0, IOR=2.5, Color=WHITE),
+        refraction("GGX", 0, IOR=1.5, Color=WHITE),
+        refraction("BECKMANN", 0, IOR=1.2, Color=SEA),
+        refraction("GGX", 0, IOR=0.9, Color=AMBER),
+        refraction("GGX", 0, IOR=1.0, Color=ROSE),
+        glass("SHARP", 0.5, IOR=1.3, Color=AMBER) if OLD else glass("GGX", 0.001, IOR=1.3, Color=AMBER),
+        shader("BsdfTransparent", Color=SEA),
+    )
+
+
+@scene(bounces=BOUNCES)
+def rough_glass():
+    on_balls(
+        *(glass(d, r, IOR=1.45, Color=WHITE) for r in (0.15, 0.4, 0.8) for d in GLASSES),
+        glass("GGX", 0.3, IOR=0.8, Color=AMBER),
+        glass("MULTI_GGX", 0.5, IOR=2, Color=SEA),
+        glass("BECKMANN", 1, IOR=1.1, Color=ROSE),
+    )
+
+
+@scene(bounces=BOUNCES)
+def rough_refraction():
+    on_balls(
+        *(refraction(d, r, IOR=1.45, Color=WHITE) for r in (0.1, 0.3, 0.6, 0.9) for d in ("GGX", "BECKMANN")),
+        refraction("GGX", 0.4, IOR=0.8, Color=AMBER),
+        refraction("BECKMANN", 0.3, IOR=2, Color=SEA),
+        refraction("GGX", 1, IOR=1.2, Color=ROSE),
+        refraction("GGX", 0.4, IOR=1.0, Color=ROSE),
+    )
+
+
+# ---- transparency ---------------------------------------------------------------------------------------------------
+
+
+def checked(tree):
+    coordinates = add(tree, "TexCoord").outputs["Generated"]
+    return add(tree, "TexChecker", Scale=5, Vector=coordinates).outputs["Fac"]
+
+
+@scene(bounces=BOUNCES)
+def alpha():
+    """Whose shadows are coloured, and thrown through several."""
+    paint, window = shader("BsdfDiffuse", Color=AMBER), shader("BsdfTransparent", Color=WHITE)
+    pane = shader("BsdfTransparent", Color=ROSE)
+    on_balls(
+        mixed(0.3, window, paint),
+        mixed(0.7, window, paint),
+        mixed(0.5, pane, paint),
+        pane,
+        mixed(checked, window, paint),
+        mixed(checked, pane, shader("BsdfTransparent", Color=SEA)),
+        mixed(0.5, window, shader(GLOSSY, Roughness=0.3, Color=AMBER)),
+        mixed(0.5, window, glass("GGX", 0, IOR=1.3)),
+        added(shader("BsdfTransparent", Color=rgba(0.3, 0.4, 0.2)), shader("BsdfDiffuse", Color=rgba(0.2, 0.3, 0.5))),
+        mixed(0.5, window, shader("Emission", Color=SEA, Strength=0.7)),
+        mixed(0.5, window, shader("BsdfTranslucent", Color=SEA)),
+        mixed(0.4, None, paint),
+    )
+
+
+@scene(bounces=BOUNCES)
+def sheets():
+    """Five of them behind each other, at an angle."""
+    on_balls()
+    for number in range(5):
+        of, tree, output = material()
+        window = mixed(0.35, shader("BsdfTransparent", Color=SEA), shader("BsdfDiffuse", Color=AMBER))
+        tree.links.new(window(tree), output.inputs["Surface"])
+        made = mesh("Sheet", [(-1, 0, -1), (1, 0, -1), (1, 0, 1), (-1, 0, 1)], [(0, 1, 2, 3)], of)
+        made.location, made.rotation_euler = (0.25 * number - 0.5, 0.7 - 0.3 * number, 0.1 * number), (0.2, 0, 0.3)
+
+
+def ray(output):
+    return lambda tree: add(tree, "LightPath").outputs[output]
+
+
+@scene(bounces=BOUNCES)
+def light_path():
+    """The usual tricks: no shadow, seen by the camera alone, light for some rays, glass without caustics."""
+    paint, window = shader("BsdfDiffuse", Color=AMBER), shader("BsdfTransparent")
+    on_balls(
+        mixed(ray("Is Camera Ray"), window, paint),
+        mixed(ray("Is Shadow Ray"), paint, window),
+        mixed(ray("Is Camera Ray"), paint, window),
+        mixed(ray("Is Shadow Ray"), glass("GGX", 0, IOR=1.5), shader("BsdfTransparent", Color=ROSE)),
+        mixed(ray("Is Diffuse Ray"), paint, window),
+        mixed(ray("Is Glossy Ray"), window, paint),
+        mixed(ray("Is Transmission Ray"), glass("GGX", 0, IOR=1.2), shader("Emission", Color=SEA, Strength=0.5)),
+        mixed(ray("Is Camera Ray"), shader("Emission", Color=ROSE, Strength=2), paint),
+        mixed(ray("Is Reflection Ray"), shader(GLOSSY, Roughness=0.5, Color=WHITE), paint),
+        mixed(ray("Is Singular Ray"), glass("GGX", 0, IOR=1.2), shader("BsdfDiffuse", Color=ROSE)),
+        mixed(ray("Is Glossy Ray"), shader(GLOSSY, Roughness=0.2, Color=WHITE), paint),
+        mixed(ray("Is Camera Ray"), shader("BsdfTranslucent", Color=SEA), shader("BsdfDiffuse", Color=ROSE)),
+    )
+
+
+# ---- reflection -----------------------------------------------------------------------------------------------------
+
+REFLECTIONS = ("GGX", "BECKMANN", "MULTI_GGX", "ASHIKHMIN_SHIRLEY")
+
+
+def glossy(distribution, roughness, anisotropy=0.0, rotation=0.0, color=WHITE, **inputs):
+    if OLD and anisotropy == 0:
+        return shader("BsdfGlossy", {"distribution": distribution}, Roughness=roughness, Color=color, **inputs)
+    shape = {"Anisotropy": anisotropy, "Rotation": rotation}
+    return shader(
+        "BsdfAnisotropic", {"distribution": distribution}, Roughness=roughness, Color=color, **shape, **inputs
+    )
+
+
+@scene(bounces=2)
+def gloss():
+    on_balls(*(glossy(d, r) for r in (0, 0.3, 0.7) for d in REFLECTIONS))
+
+
+@scene(bounces=2)
+def anisotropic_gloss():
+    on_balls(
+        *(glossy(d, 0.4, 0.7) for d in REFLECTIONS),
+        *(glossy(d, 0.6, -0.8, 0.15, AMBER) for d in REFLECTIONS),
+        *(glossy(d, 0.3, 0.5, 0.25, SEA) for d in REFLECTIONS),
+    )
+
+
+@scene(bounces=2)
+def tangents():
+    """Of other axes, and of a normal of its own."""
+
+    def along(axis):
+        def build(tree):
+            tangent = add(tree, "Tangent", {"direction_type": "RADIAL", "axis": axis}).outputs[0]
+            return glossy("GGX", 0.4, 0.8, Tangent=tangent)(tree)
+
+        return build
+
+    def bumped(kind, **inputs):
+        def build(tree):
+            height = add(tree, "TexNoise", Scale=3, Vector=add(tree, "TexCoord").outputs["Object"]).outputs[0]
+            normal = add(tree, "Bump", Strength=0.5, Distance=0.2, Height=height).outputs[0]
+            return add(tree, kind, Normal=normal, **inputs).outputs[0]
+
+        return build
+
+    on_balls(
+        along("X"),
+        along("Y"),
+        along("Z"),
+        bumped(GLOSSY, Roughness=0.3),
+        bumped("BsdfDiffuse"),
+        bumped("BsdfGlass", Roughness=0),
+        bumped("BsdfPrincipled", Roughness=0.3),
+        added(
+            shader("BsdfDiffuse", Color=rgba(0.3, 0.2, 0.1)), bumped(GLOSSY, Roughness=0.2, Color=rgba(0.5, 0.5, 0.5))
+        ),
+    )
+
+
+def sheen(distribution, roughness, color=WHITE):
+    return shader("BsdfSheen", {"distribution": distribution}, Color=color, Roughness=roughness)
+
+
+@scene(bounces=2)
+def diffuse_and_cloth():
+    cloth = (
+        [shader("BsdfVelvet", Color=ROSE, Sigma=sigma) for sigma in (0.05, 0.3, 0.6, 1)]
+        if OLD
+        else [sheen("ASHIKHMIN", 0.3, ROSE), *(sheen("MICROFIBER", r, ROSE) for r in (0.1, 0.4, 0.9))]
+    )
+    on_balls(
+        *(shader("BsdfDiffuse", Color=AMBER, Roughness=r) for r in (0, 0.2, 0.6, 1)),
+        *cloth,
+        shader("BsdfTranslucent", Color=SEA),
+        mixed(0.4, shader("BsdfTranslucent", Color=SEA), shader("BsdfDiffuse", Color=AMBER, Roughness=0.5)),
+        added(shader("BsdfDiffuse", Color=rgba(0.3, 0.2, 0.1)), glossy("BECKMANN", 0.3, color=rgba(0.5, 0.5, 0.4))),
+        shader("Background", Color=SEA, Strength=0.8),
+    )
+
+
+@scene(bounces=2)
+def several_lobes():
+    """More of them than techniques."""
+    layers = [glossy(d, r, color=rgba(0.25, 0.2, 0.15)) for d, r in (("GGX", 0.1), ("BECKMANN", 0.3), ("GGX", 0.6))]
+    paint = shader("BsdfDiffuse", Color=SEA)
+    on_balls(
+        added(layers[0], layers[1]),
+        added(layers[0], added(layers[1], layers[2])),
+        added(paint, added(layers[0], layers[2])),
+        mixed(0.3, added(layers[0], layers[1]), added(layers[2], shader("BsdfTranslucent", Color=ROSE))),
+        mixed(0.5, glass("GGX", 0, IOR=1.4), layers[2]),
+        mixed(0.5, glass("GGX", 0.3, IOR=1.4), glossy("GGX", 0)),
+        mixed(0.5, glossy("GGX", 0, color=AMBER), glossy("GGX", 0, color=SEA)),
+        mixed(checked, glossy("GGX", 0.2), paint),
+    )
+
+
+# ---- Principled -----------------------------------------------------------------------------------------------------
+
+
+def principled(settings=None, **inputs):
+    """Of names as in this Blender."""
+    return shader("BsdfPrincipled", settings, **{"Base_Color": rgba(0.7, 0.4, 0.25), **inputs})
+
+
+# of the old node and the new: what to set, for each name of ours
+NAMES = {
+    "level": ("Specular", "Specular_IOR_Level"),
+    "transmission": ("Transmission", "Transmission_Weight"),
+    "coat": ("Clearcoat", "Coat_Weight"),
+    "coat_roughness": ("Clearcoat_Roughness", "Coat_Roughness"),
+    "sheen": ("Sheen", "Sheen_Weight"),
+    "emission": ("Emission", "Emission_Color"),
+}
+
+
+def named(**inputs):
+    return principled(
+        **{NAMES[name][0 if OLD else 1] if name in NAMES else name: value for name, value in inputs.items()}
+    )
+
+
+@scene(bounces=2)
+def principled_base():
+    on_balls(
+        named(),
+        *(named(Roughness=r) for r in (0, 0.2, 1)),
+        *(named(Metallic=m, Roughness=0.3) for m in (0.5, 1)),
+        *(named(level=level, Roughness=0.3) for level in (0, 1)),
+        *(named(Anisotropic=a, Metallic=1, Roughness=0.4, Anisotropic_Rotation=r) for a, r in ((0.8, 0), (0.5, 0.2))),
+        named(emission=rgba(0.2, 0.4, 0.8), Emission_Strength=0.8),
+        named(IOR=1.8, Roughness=0.3),
+    )
+
+
+GLOWS = {"emission": rgba(0.2, 0.4, 0.8), "Emission_Strength": 0.8}
+
+
+@scene(bounces=2)
+def principled_sheen():
+    on_balls(
+        *(named(sheen=s) for s in (0.5, 1)),
+        named(sheen=1, Metallic=0.4),
+        named(sheen=1, Sheen_Tint=1.0 if OLD else ROSE),
+        named(sheen=1, **GLOWS),
+        named(Specular_Tint=1.0 if OLD else SEA, level=1),
+        *([] if OLD else [named(sheen=1, Sheen_Roughness=r) for r in (0.1, 0.3, 1)]),
+    )
+
+
+# Cycles 3.4 samples the coat's facets by another distribution than it takes the density of
+COAT_OF_3_4 = (
+    {"within": 0.03, "why": "Cycles 3.4 draws the coat's directions by another density than it divides by"}
+    if OLD
+    else {}
+)
+
+
+@scene(bounces=2, **COAT_OF_3_4)
+def principled_coat():
+    on_balls(
+        *(named(coat=c, Roughness=0.7) for c in (0.5, 1)),
+        named(coat=1, coat_roughness=0.4, Roughness=0.8),
+        named(coat=1, coat_roughness=0, Metallic=1, Roughness=0.5),
+        named(coat=1, Metallic=0.4),
+        named(coat=1, sheen=1),
+        named(coat=1, coat_roughness=0.2, **GLOWS),
+        named(coat=0.7, Alpha=0.6, **GLOWS),
+        named(coat=1, transmission=1, Roughness=0.3),
+        *(
+            []
+            if OLD
+            else [named(coat=1, Coat_Tint=AMBER), named(coat=1, Coat_IOR=2.0), named(coat=1, sheen=1, **GLOWS)]
+        ),
+    )
+
+
+@scene(bounces=BOUNCES)
+def principled_glass():
+    weight = NAMES["transmission"][0 if OLD else 1]
+    on_balls(
+        *(named(transmission=1, Roughness=r) for r in (0, 0.3, 0.8)),
+        principled({"distribution": "GGX"}, Roughness=0.5, **{weight: 1}),
+        *([] if OLD else [principled({"distribution": "MULTI_GGX"}, Roughness=0.5, **{weight: 1})]),
+        named(transmission=0.5, Roughness=0.2),
+        named(transmission=1, IOR=1.1, Roughness=0),
+        named(transmission=1, IOR=0.8, Roughness=0.2),
+        named(transmission=0.7, Metallic=0.5, Roughness=0.4),
+        named(Alpha=0.3),
+        named(Alpha=0.6, **GLOWS),
+        named(transmission=1, Roughness=0.1, Specular_Tint=0.7 if OLD else ROSE),
+    )
+
+
+# a factor that keeps the energy, where Cycles 3.4 follows light from facet to facet
+MANY_OF_3_4 = (
+    {"within": 0.08, "why": "multiple reflection between facets is a factor, in Cycles 3.4 a walk"} if OLD else {}
+)
+
+
+@scene(bounces=2)
+def principled_single():
+    """Without what facets reflect again."""
+    on_balls(
+        *(principled({"distribution": "GGX"}, Roughness=r, Metallic=m) for r in (0.2, 0.5, 0.8, 1) for m in (0, 0.5, 1))
+    )
+
+
+@scene(bounces=2, **MANY_OF_3_4)
+def principled_multiple():
+    multiple = {"distribution": "MULTI_GGX"}
+    on_balls(*(principled(multiple, Roughness=r, Metallic=m) for r in (0.2, 0.5, 0.8, 1) for m in (0, 0.5, 1)))
+
+
+def random_settings(seed):
+    """Of every input of the node; what is not supported, and what has a scene of its own for 3.4, is left as it comes."""
+    left = ("Subsurface", "Thin", "Weight", *(("Clearcoat",) if OLD else ()))
+    distributions = ["GGX"] if OLD else ["GGX", "MULTI_GGX"]
+    random_number = random.Random(seed)
+
+    def build(tree):
+        node = add(tree, "BsdfPrincipled", {"distribution": random_number.choice(distributions)})
+        for socket in node.inputs:
+            pick = random_number.random()
+            if socket.name.startswith(left) or socket.type not in {"VALUE", "RGBA"}:
+                continue
+            if "IOR" in socket.name and "Level" not in socket.name:
+                socket.default_value = 1 + pick
+            elif socket.name == "Emission Strength":
+                socket.default_value = 0.5 * pick if random_number.random() < 0.2 else 0
+            elif socket.type == "RGBA":
+                socket.default_value = [0.2 + 0.7 * random_number.random() for _ in range(3)] + [1]
+            elif socket.name == "Alpha":
+                socket.default_value = pick if random_number.random() < 0.2 else 1
+            else:  # half of the layers are left out
+                socket.default_value = pick if random_number.random() < 0.5 else socket.default_value
+        return node.outputs[0]
+
+    return build
+
+
+@scene(bounces=BOUNCES)
+def principled_at_random():
+    on_balls(*map(random_settings, range(12)))
