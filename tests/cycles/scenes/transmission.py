@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What goes through surfaces: how often it may, and what it sees."""
+"""How often light may go through surfaces."""
 
 import math
 from collections.abc import Callable
@@ -8,12 +8,7 @@ from typing import Any
 import bpy
 from stage import add, ball, camera, diffuse, floor, lamp, material, mesh, scene, sky, square
 
-KINDS: dict[str, dict[str, Any]] = {
-    "Refraction": {"IOR": 1.2, "Roughness": 0.0},
-    "Glass": {"IOR": 1.3, "Roughness": 0.3},
-    "Translucent": {},
-    "Transparent": {"Color": (0.8, 0.7, 0.6, 1)},
-}
+KINDS: dict[str, dict[str, Any]] = {"Refraction": {"IOR": 1.2, "Roughness": 0.0}}
 
 
 def shader(kind: str) -> Any:
@@ -47,27 +42,5 @@ def enter(name: str, build: Callable[[], None]) -> None:
     scene(bounces=8)(build)
 
 
-for bounces in (0, 1, 2):
+for bounces in (0, 1):
     enter(f"refraction_{bounces}", lambda bounces=bounces: (panes("Refraction"), limited(bounces, 8)))
-enter("translucent_1", lambda: (panes("Translucent"), limited(1, 8)))
-enter("glass_1", lambda: (panes("Glass"), limited(1, 8)))
-for surfaces in (0, 1, 3):
-    enter(f"transparent_{surfaces}", lambda surfaces=surfaces: (panes("Transparent"), limited(8, surfaces)))
-
-
-@scene(bounces=8)
-def ball_not_by_what_is_refracted():
-    panes("Refraction", 2)
-    bpy.data.objects["Ball"].visible_transmission = False
-
-
-@scene(bounces=8)
-def lamp_not_by_what_is_transmitted():
-    panes("Translucent", 2)
-    lamp("POINT", (-1, -1, 2), 200, (1, 0.2, 0.2)).visible_transmission = False
-
-
-@scene(bounces=8)
-def sky_not_by_what_is_refracted():
-    panes("Refraction", 2)
-    bpy.context.scene.world.cycles_visibility.transmission = False
