@@ -308,6 +308,11 @@ PASS_NAMES = {
     "material-index": "Material Index" if VERSION >= (5, 0, 0) else "IndexMA",
     "emission": "Emission" if VERSION >= (5, 0, 0) else "Emit",
     "environment": "Environment" if VERSION >= (5, 0, 0) else "Env",
+    **{
+        f"{component.lower()}-{part.lower()}": f"{component} {part}" if VERSION >= (5, 0, 0) else short + part[:3]
+        for component, short in (("Diffuse", "Diff"), ("Glossy", "Gloss"), ("Transmission", "Trans"))
+        for part in ("Direct", "Indirect", "Color")
+    },
 }
 
 LONGEST_CHANNEL = (

@@ -11,6 +11,7 @@ import bpy
 from . import compat, light_paths
 from .engine import WARDMIS_RenderEngine
 from .layout import draw_text
+from .passes import COMPONENTS, PARTS
 from .sharing import uses_pilot, yields
 
 ENGINE = WARDMIS_RenderEngine.bl_idname
@@ -199,6 +200,10 @@ class WARDMIS_VIEWLAYER_PT_passes(Panel, bpy.types.Panel):
         data.prop(layer, "use_pass_material_index", text="Material Index")
         data.prop(layer.wardmis, "use_pass_albedo")
         column.separator()
+        for component in COMPONENTS:
+            row = column.row(heading=component.title(), align=True)
+            for part in PARTS:
+                row.prop(layer, f"use_pass_{component}_{part}", text=part.title(), toggle=True)
         light = column.column(heading="Light")
         light.prop(layer, "use_pass_emit", text="Emission")
         light.prop(layer, "use_pass_environment", text="Environment")

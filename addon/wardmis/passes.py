@@ -24,6 +24,8 @@ class Pass(NamedTuple):
     group: str  # what `--passes` calls it
 
 
+COMPONENTS, PARTS = ("diffuse", "glossy", "transmission"), ("direct", "indirect", "color")
+
 PASSES = (
     Pass("Combined", "RGBA", "COLOR", "combined"),
     Pass("Depth", "Z", "VALUE", "depth"),
@@ -39,6 +41,7 @@ PASSES = (
             ("material-index", "X", "VALUE"),
             ("emission", "RGB", "COLOR"),
             ("environment", "RGB", "COLOR"),
+            *((f"{component}-{part}", "RGB", "COLOR") for component in COMPONENTS for part in PARTS),
         )
     ),
 )
@@ -54,6 +57,7 @@ BLENDERS = {
     "use_pass_material_index": "material-index",
     "use_pass_emit": "emission",
     "use_pass_environment": "environment",
+    **{f"use_pass_{c}_{part}": f"{c}-{part}" for c in COMPONENTS for part in PARTS},
 }
 OTHERS = {"use_pass_combined", "use_pass_cryptomatte_accurate", "use_pass_grease_pencil"}
 

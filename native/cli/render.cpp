@@ -124,32 +124,28 @@ json statisticsJson(const std::string& path, const RenderSettings& settings, con
 // so that who asked for it knows what the file holds.
 std::vector<PassInfo> choosePasses(const std::string& list, TechniqueMask techniques,
                                    const std::vector<std::string>& names) {
-  std::vector<PassInfo> chosen;
-  if (list.empty()) {
-    for (const PassInfo& p : passesFor(techniques, names))
-      if (!p.data) chosen.push_back(p);
-    return chosen;
-  }
+  if (list.empty()) return passesFor(techniques, names);
+  std::vector<PassInfo> known = passesFor(~TechniqueMask{0}, names), chosen;
+  const std::vector<PassInfo> others = passesOnRequest();
+  known.insert(known.end(), others.begin(), others.end());
   for (const std::string& each : CLI::detail::split(list, ',')) {
     const size_t equals = each.find('=');
     const std::string want = each.substr(0, equals);
-    bool known = false;
-    for (PassInfo p : passesFor(~TechniqueMask{0}, names))
-      if (p.group == want) {
-        known = true;
-        if (equals != std::string::npos) {
-          if (!p.data || equals + 1 == each.size() || each.find('.') != std::string::npos)
-            throw Error(
-                ExitCode::kUsage, fmt::format("--passes: '{}' cannot be a name of that pass", each),
-                "names are for position, uv, object-index, material-index, emission and environment, and have no dot");
-          p.name = each.substr(equals + 1);
-        }
-        chosen.push_back(std::move(p));
-      }
-    if (!known)
+    const size_t before = chosen.size();
+    for (const PassInfo& p : known) {
+      if (p.group != want) continue;
+      PassInfo& made = chosen.emplace_back(p);
+      if (equals == std::string::npos) continue;
+      made.name = each.substr(equals + 1);
+      if (!(p.data || p.light) || made.name.empty() || made.name.find('.') != std::string::npos)
+        throw Error(ExitCode::kUsage, fmt::format("--passes: '{}' cannot be a name of that pass", each),
+                    "names are for the passes from position on, as --help lists them, and have no dot");
+    }
+    if (chosen.size() == before)
       throw Error(ExitCode::kUsage, fmt::format("--passes: there is no pass '{}'", want),
                   "known: combined, depth, normal, albedo, variance, allocation, position, uv, object-index, "
-                  "material-index, emission, environment");
+                  "material-index, emission, environment, and diffuse-, glossy-, transmission- with direct, indirect, "
+                  "color");
   }
   return chosen;
 }
@@ -165,7 +161,7 @@ int run(Options& o) {
   RenderSettings s = o.settings.chosen();
   s.spp = o.spp, s.seconds = o.seconds, s.seed = o.seed, s.threads = o.threads;
   for (const PassInfo& p : choosePasses(o.passes, 0, {"any"}))  // whether they exist
-    s.data = s.data || p.data;
+    s.data = s.data || p.data, s.light = s.light || p.light;
   checkDistinct({{"SCENE", o.scene}, {"--output", o.output}, {"--stats", o.stats}, {"--preview", o.preview}});
   for (const std::string* path : {&o.output, &o.stats, &o.preview})
     if (!path->empty()) checkWritable(*path);
@@ -297,7 +293,8 @@ Verb addRender(CLI::App& app) {
   app.add_option(
       "--passes", o->passes,
       "of combined,depth,normal,albedo,variance,allocation (default: all of these), position,uv,object-index,"
-      "material-index,emission,environment; of the latter also PASS=NAME, its name in the file");
+      "material-index,emission,environment, diffuse-direct,diffuse-indirect,diffuse-color and likewise for "
+      "glossy and transmission; of the latter also PASS=NAME, its name in the file");
   app.add_option("--stats", o->stats, "write statistics to this JSON file");
   app.add_option("--progress", o->progress, "bar, json or none")
       ->check(CLI::IsMember({"auto", "bar", "json", "none"}))

@@ -6,6 +6,7 @@
 #include <array>
 #include <vector>
 
+#include "math/component.h"
 #include "math/vec.h"
 
 namespace wardmis {
@@ -39,12 +40,20 @@ struct DataPixel {
   }
 };
 
+// Light by the component of the surface that the camera meets first: sums of what arrives there directly, by way of
+// other surfaces, and of its own colour. Kept where a pass of it is wanted.
+struct LightPixel {
+  using Sums = std::array<std::array<double, 3>, kComponents>;
+  Sums direct{}, indirect{}, color{};
+};
+
 struct FilmBuffer {
   int width = 0, height = 0;  // of the border; row 0 is the bottom row
   std::vector<Pixel> pixels;
   size_t techniques = 0;               // that the renderer counts
   std::vector<uint32_t> sampleCounts;  // [pixel * techniques + technique]: samples that it took at first hits
   std::vector<DataPixel> data;         // of each pixel; empty where no pass wants it
+  std::vector<LightPixel> light;       // likewise
   uint32_t samples = 0;                // camera samples that every pixel has
 
   FilmBuffer() = default;

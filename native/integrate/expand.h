@@ -27,6 +27,8 @@ void expand(const Closure& c, const ClosureValues& v, const std::array<float, 3>
   const Rgb color = notNegative(v.colors[0]), weight = v.weight * color;
   const auto s = [&](size_t i) { return v.scalars[i]; };
   switch (c.type) {
+    case ClosureType::kHoldout:
+      return;
     case ClosureType::kDiffuse:
       return addDiffuse(version, weight, color, s(0), cosines[0], add);
     case ClosureType::kTranslucent:

@@ -121,12 +121,22 @@ struct HitMoments {
   }
 };
 
+// The light of one camera sample by the components of what it meets first.
+struct LightSplit {
+  using PerComponent = std::array<Rgb, kComponents>;
+  PerComponent direct{};
+  std::array<PerComponent, kMaxSamplesPerHit> share;  // of the light of each path that goes on
+
+  void add(Component c, Rgb value) { direct[static_cast<size_t>(c)] += value; }
+};
+
 // Where the pilot notes what the samples of a hit bring: its moments, or, for `auto`, the sums of the candidates. Of
 // all light, also of what comes by way of other surfaces.
 template <size_t K>
 struct HitRecord {
   HitMoments<K>* moments = nullptr;
   CandidateHit<K>* candidates = nullptr;
+  LightSplit* light = nullptr;
 
   // A sample's value f in one integrand, as for Moments::add.
   void add(size_t integrand, float f, const Fractions<K>& p, const Fractions<K>& n, TechniqueMask used, int set) {
@@ -214,6 +224,15 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
   const auto note = [&](size_t integrand, Rgb f, const Fractions<K>& p, TechniqueMask used, int set) {
     if (record != nullptr) record->add(integrand, std::abs(luminance(f)), p, mixture.n, used, set);
   };
+  const auto componentOf = [&](size_t integrand, [[maybe_unused]] bool ahead) {
+    if constexpr (kGeneral) return s.component(integrand, ahead);
+    return integrand == kCosine ? Component::kDiffuse : Component::kGlossy;
+  };
+  // f times `by` is what each integrand adds to the estimate.
+  const auto noteLight = [&](const PerIntegrand<Rgb, K>& f, Rgb by, bool ahead) {
+    if (record != nullptr && record->light != nullptr)
+      for (size_t i = 0; i < f.size(); ++i) record->light->add(componentOf(i, ahead), f[i] * by);
+  };
 
   // One sample's share of an emitter's light, by MIS over the techniques of each integral. f: of each integrand, f cos.
   using Values = PerIntegrand<Rgb, K>;
@@ -242,16 +261,20 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     if (!split) {
       const Rgb value = total(f) * radiance;
       const TechniqueMask used = techniques(t, sharp);
-      sum += value * mixture.scale(t, p, used);
+      const float scale = mixture.scale(t, p, used);
+      sum += value * scale;
       note(0, value, p, used, set);
+      noteLight(f, radiance * scale, ahead);
       return;
     }
     for (size_t i = 0; i < f.size(); ++i) {
       if (!present[i] || (t != i && t != kLight)) continue;
       const TechniqueMask used = techniques(i, sharp);
       const Rgb value = f[i] * radiance;
-      sum += value * mixture.scale(t, p, used);
+      const float scale = mixture.scale(t, p, used);
+      sum += value * scale;
       note(i, value, p, used, set);
+      if (record != nullptr && record->light != nullptr) record->light->add(componentOf(i, ahead), value * scale);
     }
     if (record != nullptr && record->candidates != nullptr)
       for (size_t i = 0; i < f.size(); ++i)
@@ -334,6 +357,8 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
         Values each = seen(f, l.visibility, ahead);
         for (Rgb& value : each) value = value * radiance;
         sum += total(each) / (l.pdf * mixture.n[kLight]);
+        const float scale = 1 / (l.pdf * mixture.n[kLight]);
+        noteLight(each, Rgb{scale, scale, scale}, ahead);
         // which of the lights is drawn is noise, too, and no other technique covers them
         Fractions<K> alone{};
         alone[kLight] = l.pdf;
@@ -389,6 +414,19 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       Rgb w = (split ? f[t] : total(f)) * scale;
       if constexpr (kGeneral) w *= seenThrough;
       const Bounce bounce = !ahead ? kTransmissionBounce : diffuse ? kDiffuseBounce : kGlossyBounce;
+      if (record != nullptr && record->light != nullptr && maxComponent(w) > 0) {
+        LightSplit::PerComponent& share = record->light->share[static_cast<size_t>(continuations.count)];
+        share.fill({0, 0, 0});
+        const Rgb all = total(f);
+        const auto part = [](float a, float b) { return b > 0 ? a / b : 0; };
+        for (size_t i = 0; i < f.size(); ++i) {
+          Rgb& to = share[static_cast<size_t>(componentOf(i, ahead))];
+          if (split)
+            to += i == t ? Rgb{1, 1, 1} : Rgb{0, 0, 0};
+          else
+            to += Rgb{part(f[i].x, all.x), part(f[i].y, all.y), part(f[i].z, all.z)};
+        }
+      }
       if (maxComponent(w) > 0)
         continuations.list.set(continuations.count++, {ray, hit, w, t, bounce, scale, used, set, p});
     }

@@ -76,6 +76,10 @@ Framef resolveLobes(const Scene& scene, const Material& m, const ShadedPoint& po
     ClosureValues v;
     v.weight = color(c.weight);
     if (!(maxComponent(v.weight) > 0)) continue;
+    if (c.type == ClosureType::kHoldout) {
+      surface.holdout += (v.weight.x + v.weight.y + v.weight.z) / 3;
+      continue;
+    }
     for (size_t i = 0; i < c.colors.size(); ++i) v.colors[i] = color(c.colors[i]);
     for (size_t i = 0; i < c.scalars.size(); ++i) v.scalars[i] = scalar(c.scalars[i]);
     const bool twoAlphas = c.type == ClosureType::kWard || c.type == ClosureType::kGlossy;

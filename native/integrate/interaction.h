@@ -89,6 +89,7 @@ inline float clearance(const Placement& p, const Corners& corner, Vec3f n) {
 // Of a shape that deforms, where the mesh's own are.
 inline Vec3f movedNormal(const Shape& s, const uint32_t* i, float u, float v, float time) {
   const auto& steps = s.part->movedNormals;
+  if (steps.empty()) return interpolate(s.part->normals, i, u, v);
   const auto [first, t] = stepAt(steps.size(), time);
   return interpolate(steps[first], i, u, v) * (1 - t) + interpolate(steps[first + 1], i, u, v) * t;
 }
@@ -142,7 +143,7 @@ InteractionOf<SurfaceOf<N, K>> interactWith(const Scene& scene, const LobeNumber
   if (!shape.part->normals.empty()) {
     // normals stay in the mesh's space, also where positions were moved
     Vec3f own = interpolate(shape.part->normals, i, hit.u, hit.v);
-    if (!shape.part->movedNormals.empty()) [[unlikely]]
+    if (shape.motion != nullptr) [[unlikely]]
       own = movedNormal(shape, i, hit.u, hit.v, ray.path.time);
     const Vec3f n = placement.toWorld.normal(own);
     const float l2 = dot(n, n);

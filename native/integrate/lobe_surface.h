@@ -8,6 +8,7 @@
 
 #include "bsdf/bump_shadow.h"
 #include "bsdf/lobe.h"
+#include "math/component.h"
 #include "mis/technique.h"
 #include "world/geometry.h"
 
@@ -19,12 +20,13 @@ class LobeSurface {
   static constexpr size_t kCosine = Techniques<K>::kCosine, kSlots = Techniques<K>::kLobes;
   static constexpr int kMostLobes = 24, kMostFrames = 8;
 
+  float holdout = 0;         // how much of it is a hole for the camera
   Rgb transparent{0, 0, 0};  // of the light that goes straight through, what arrives
 
   // frame: the surface's own; wo in world space, unit.
   void begin(const Framef& frame, Vec3f wo) {
     count_ = 0, frames_ = 0;
-    transparent = {0, 0, 0}, diffuse_ = {0, 0, 0};
+    transparent = {0, 0, 0}, diffuse_ = {0, 0, 0}, holdout = 0;
     wo_ = wo;
     addFrame(frame);
   }
@@ -106,6 +108,27 @@ class LobeSurface {
     for (int i = 0; i < count_; ++i) sum += albedoOf(lobe_[i]);
     return sum;
   }
+  // Albedos by component.
+  std::array<Rgb, kComponents> colors() const {
+    std::array<Rgb, kComponents> sum{diffuse_, Rgb{0, 0, 0}, Rgb{0, 0, 0}};
+    for (int i = 0; i < count_; ++i) {
+      const Lobe& l = lobe_[i];
+      Lobe near = l;
+      if (isGlass(l.kind)) near.through = {0, 0, 0};
+      const Rgb all = albedoOf(l), reflected = isGlass(l.kind) ? albedoOf(near) : all;
+      sum[static_cast<size_t>(componentOf(l, wardmis::reflects(l.kind)))] += reflected;
+      sum[static_cast<size_t>(Component::kTransmission)] += all - reflected;
+    }
+    return sum;
+  }
+  // What the lobes of a technique are on the viewer's side (ahead) or on the other: where there are several, the last.
+  Component component(size_t slot, bool ahead) const {
+    Component found = slot == kCosine ? Component::kDiffuse : ahead ? Component::kGlossy : Component::kTransmission;
+    for (int i = 0; i < count_; ++i)
+      if (slot_[i] == slot && (ahead ? wardmis::reflects(lobe_[i].kind) : wardmis::transmits(lobe_[i].kind)))
+        found = componentOf(lobe_[i], ahead);
+    return found;
+  }
   // Whether the rounding of float directions would show, as Surface has it.
   bool needsDouble(float cosThetaO) const {
     return std::any_of(lobe_.begin(), lobe_.begin() + count_, [&](const Lobe& l) {
@@ -171,6 +194,9 @@ class LobeSurface {
   }
 
  private:
+  static Component componentOf(const Lobe& l, bool ahead) {
+    return isMatte(l.kind) ? Component::kDiffuse : ahead ? Component::kGlossy : Component::kTransmission;
+  }
   // Reflects as the cosine goes, about the surface's own normal.
   static bool byCosine(const Lobe& l) {
     return l.frame == 0 && detail::isDiffuse(l.kind) && !wardmis::transmits(l.kind);

@@ -16,12 +16,12 @@ namespace {
 template <size_t K>
 constexpr uint64_t kWritten = (17 + K) * sizeof(float);
 
-constexpr uint64_t kData = sizeof(DataPixel) + 14 * sizeof(float);
+constexpr uint64_t kData = sizeof(DataPixel) + 14 * sizeof(float), kLight = sizeof(LightPixel) + 27 * sizeof(float);
 
 template <size_t K>
 uint64_t bytesPerPixelWith(const RenderSettings& s) {
   constexpr uint64_t kFilm = sizeof(Pixel) + K * sizeof(uint32_t);
-  const uint64_t written = kFilm + kWritten<K> + (s.data ? kData : 0);
+  const uint64_t written = kFilm + kWritten<K> + (s.data ? kData : 0) + (s.light ? kLight : 0);
   if (s.allocation == Allocation::kAuto)  // its pilot is over before there is a film
     return std::max(written, (kFilm + sizeof(PilotPixel) + sizeof(CandidateSums<K>) + sizeof(PixelFractions<K>)) /
                                  (kCoarse * kCoarse));

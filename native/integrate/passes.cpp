@@ -84,11 +84,47 @@ const std::vector<PassSource>& dataSources() {
   return all;
 }
 
+// What arrives by what of it is sent on. Where a channel sends nothing on, as the mean of the others, so that light on
+// a surface of pure red is white: as Cycles.
+Value dividedBy(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  std::array<double, 3> v{};
+  double sum = 0;
+  int n = 0;
+  for (size_t i = 0; i < 3; ++i)
+    if (b[i] != 0) v[i] = a[i] / b[i], sum += v[i], ++n;
+  if (n > 0 && n < 3)
+    for (size_t i = 0; i < 3; ++i)
+      if (b[i] == 0) v[i] = sum / n;
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]), 0};
+}
+
+const std::vector<PassSource>& lightSources() {
+  static const std::vector<PassSource> all = [] {
+    constexpr std::pair<const char*, const char*> kNames[kComponents] = {
+        {"Diffuse", "diffuse"}, {"Glossy", "glossy"}, {"Transmission", "transmission"}};
+    std::vector<PassSource> list;
+    for (size_t c = 0; c < kComponents; ++c) {
+      const std::string name = kNames[c].first, group = kNames[c].second;
+      list.push_back({{name + " Direct", "RGB", group + "-direct", false, true}, [c](const FilmBuffer& f, size_t i) {
+                        return dividedBy(f.light[i].direct[c], f.light[i].color[c]);
+                      }});
+      list.push_back(
+          {{name + " Indirect", "RGB", group + "-indirect", false, true},
+           [c](const FilmBuffer& f, size_t i) { return dividedBy(f.light[i].indirect[c], f.light[i].color[c]); }});
+      list.push_back({{name + " Color", "RGB", group + "-color", false, true},
+                      [c](const FilmBuffer& f, size_t i) { return meanOf(f, f.light[i].color[c]); }});
+    }
+    return list;
+  }();
+  return all;
+}
+
 PassSource sourceOf(const PassInfo& pass, const std::vector<std::string>& names) {
-  if (pass.data)
-    return {pass, std::find_if(dataSources().begin(), dataSources().end(), [&](const PassSource& s) {
-                    return s.info.group == pass.group;
-                  })->get};
+  if (pass.data || pass.light) {  // it may have another name
+    const auto& of = pass.data ? dataSources() : lightSources();
+    return {pass,
+            std::find_if(of.begin(), of.end(), [&](const PassSource& s) { return s.info.group == pass.group; })->get};
+  }
   for (size_t t = 0; t < names.size(); ++t)
     if (pass.name == allocationPass(names[t]))
       return {pass, [t](const FilmBuffer& f, size_t i) -> Value {
@@ -113,7 +149,13 @@ std::vector<PassInfo> passesFor(TechniqueMask techniques, const std::vector<std:
   for (const PassSource& s : sources()) result.push_back(s.info);
   for (size_t t = 0; t < names.size(); ++t)
     if (has(techniques, t)) result.push_back({allocationPass(names[t]), "X", "allocation"});
+  return result;
+}
+
+std::vector<PassInfo> passesOnRequest() {
+  std::vector<PassInfo> result;
   for (const PassSource& s : dataSources()) result.push_back(s.info);
+  for (const PassSource& s : lightSources()) result.push_back(s.info);
   return result;
 }
 

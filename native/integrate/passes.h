@@ -16,15 +16,17 @@ struct PassInfo {
   std::string name;      // "Combined"
   std::string channels;  // "RGBA"
   std::string group;     // what --passes calls it
-  bool data = false;     // of DataPixel: there only where it is asked for
+  // of DataPixel, of LightPixel: there only where it is asked for
+  bool data = false, light = false;
 };
 
 // The pass of a technique's shares: "Allocation Lobe".
 std::string allocationPass(const std::string& technique);
 
-// All passes of a scene with these techniques, those of data last; names: of all that the kernel knows, as Statistics
-// has them.
+// All passes of a scene with these techniques; names: of all that the kernel knows, as Statistics has them.
 std::vector<PassInfo> passesFor(TechniqueMask techniques, const std::vector<std::string>& names);
+// And those of data and light.
+std::vector<PassInfo> passesOnRequest();
 
 // The chosen passes' channels, "<layer>.<pass>.<channel>". zUp: frame of the Normal pass (docs/scene-format.md).
 // A pass is called as PassInfo says.

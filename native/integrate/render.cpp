@@ -247,6 +247,7 @@ FilmBuffer renderWith(const BuiltScene& built, const RenderSettings& settings, S
   }
   buffer = setup.film();
   if (settings.data) buffer.data.resize(buffer.pixels.size());
+  if (settings.light) buffer.light.resize(buffer.pixels.size());
   run.onto(buffer, stats.allocated && coarse(settings) ? pilotSpp : 0);
   if (stats.allocated && !coarse(settings)) {
     stats.pilotKept = true;

@@ -32,7 +32,7 @@ struct GivenCost {
 };
 
 struct RenderSettings {
-  bool data = false;  // what DataPixel has is wanted
+  bool data = false, light = false;  // what DataPixel and LightPixel have is wanted
   Allocation allocation = Allocation::kAuto;
   std::optional<Weights> weights;  // none: what the paper pairs with the allocation
   Integrand integrand = Integrand::kSplit;

@@ -25,12 +25,12 @@ template <class X>
   data.materialIndex = world.scene.materials[static_cast<size_t>(x.material)].index;
 }
 
-// Radiance along one camera ray. data: null where it is not wanted. taken: the pixel's samples of each technique so
-// far.
+// Radiance along one camera ray. data, light: null where they are not wanted. taken: the pixel's samples of each
+// technique so far.
 template <uint32_t N, size_t K>
 Rgb cameraSample(const KernelInput<K>& in, const Ray& camera, uint32_t pixelKey, uint32_t sample,
-                 const PixelFractions<K>* allocated, Pixel& pixel, DataPixel* data, uint32_t* taken, PilotPixel* pilot,
-                 HitMoments<K>* moments, CandidateSums<K>* candidates, Counts& counts) {
+                 const PixelFractions<K>* allocated, Pixel& pixel, DataPixel* data, LightPixel* light, uint32_t* taken,
+                 PilotPixel* pilot, HitMoments<K>* moments, CandidateSums<K>* candidates, Counts& counts) {
   const RenderScene& world = in.scene;
   ++counts.cameraRays;
   const bool transparent = world.scene.film.transparent;
@@ -56,6 +56,11 @@ Rgb cameraSample(const KernelInput<K>& in, const Ray& camera, uint32_t pixelKey,
 
   const auto x = interact<N, K>(world.scene, world.geometry, ray, hit);
   const auto& s = x.surface;
+  if constexpr ((N & kNeedsLobes) != 0)
+    if (s.holdout > 0) {
+      pixel.alpha -= std::min(s.holdout, 1.0f);
+      if (s.holdout >= 1) return sum;
+    }
   sum += x.emission * seenThrough;
   if (data != nullptr) [[unlikely]] {
     DataPixel::add(data->emission, x.emission * seenThrough * exposure);
@@ -64,6 +69,11 @@ Rgb cameraSample(const KernelInput<K>& in, const Ray& camera, uint32_t pixelKey,
   if (sample == 0) pixel.depth = in.camera.depth(ray, hit.t);
   pixel.normal += x.frame.z;
   pixel.albedo += s.albedo();
+  const auto addLight = [&](LightPixel::Sums& sums, const std::array<Rgb, kComponents>& values, Rgb by) {
+    for (size_t c = 0; c < kComponents; ++c) DataPixel::add(sums[c], values[c] * by);
+  };
+  if (light != nullptr) [[unlikely]]
+    addLight(light->color, s.colors(), seenThrough);
   const TechniqueMask mask = techniquesAt<K>(s, in.lights, in.surfaceRays);
   const PixelSurface surface{x.frame.z, x.material, x.placement};
   if (pilot != nullptr && pilot->surface.material < 0) pilot->surface = surface, pilot->techniques = mask;
@@ -95,11 +105,18 @@ Rgb cameraSample(const KernelInput<K>& in, const Ray& camera, uint32_t pixelKey,
   const Counts::PerTechnique before = counts.samples;
   std::optional<HitRecord<K>> record;
   std::optional<CandidateHit<K>> candidate;
-  if (pilot != nullptr && follows) {
-    if (candidates != nullptr) candidate.emplace(in.candidates.of(mask));
-    record.emplace(HitRecord<K>{moments, candidate ? &*candidate : nullptr});
+  std::optional<LightSplit> split;
+  if (light != nullptr) [[unlikely]]
+    split.emplace();
+  const bool noted = pilot != nullptr && follows;
+  if (noted || split) {
+    if (noted && candidates != nullptr) candidate.emplace(in.candidates.of(mask));
+    record.emplace(
+        HitRecord<K>{noted ? moments : nullptr, candidate ? &*candidate : nullptr, split ? &*split : nullptr});
   }
   sum += estimate<N, K>(world, in.sampler, x, plan, counts, record ? &*record : nullptr, more) * seenThrough;
+  if (split) [[unlikely]]
+    addLight(light->direct, split->direct, seenThrough * exposure);
   for (size_t i = 0; i < K; ++i) taken[i] += static_cast<uint32_t>(counts.samples[i] - before[i]);
   if constexpr ((N & kNeedsBounces) != 0) {
     const Fractions<K> n = record ? Mixture<K>(plan.fractions, plan.samples, plan.weights).n : Fractions<K>{};
@@ -111,6 +128,8 @@ Rgb cameraSample(const KernelInput<K>& in, const Ray& camera, uint32_t pixelKey,
                                          in.limits, counts);
       sum += value * seenThrough;
       counts.following[c.technique] += counts.allRays() - rays;
+      if (split) [[unlikely]]
+        addLight(light->indirect, split->share[static_cast<size_t>(k)], value * seenThrough * exposure);
       if (record)
         record->add(plan.integrand == Integrand::kSplit ? c.technique : 0, std::abs(luminance(value)) / c.scale, c.p, n,
                     c.used, c.set);
@@ -135,6 +154,7 @@ void renderTile(const KernelInput<K>& in, const Tile& tile, FilmBuffer& film, Pi
           pilot != nullptr && !pilot->candidates.empty() ? &pilot->candidates[index] : nullptr;
       HitMoments<K>* moments = pilot != nullptr && !pilot->moments.empty() ? &pilot->moments[index] : nullptr;
       DataPixel* data = film.data.empty() ? nullptr : &film.data[index];
+      LightPixel* light = film.light.empty() ? nullptr : &film.light[index];
       PilotPixel* pilotPixel = pilot != nullptr ? &pilot->pixels[index] : nullptr;
       for (uint32_t s = tile.firstSample; s < tile.firstSample + tile.samples; ++s) {
         const Vec2f offset = in.filter.sample(in.sampler.get2D(key, Dimensions<K>::kFilmPoint, s));
@@ -149,8 +169,8 @@ void renderTile(const KernelInput<K>& in, const Tile& tile, FilmBuffer& film, Pi
           pixel.add({0, 0, 0});
           continue;
         }
-        const Rgb value = cameraSample<N, K>(in, ray, key, s, allocated, pixel, data, &film.sampleCounts[index * K],
-                                             pilotPixel, moments, candidates, counts) *
+        const Rgb value = cameraSample<N, K>(in, ray, key, s, allocated, pixel, data, light,
+                                             &film.sampleCounts[index * K], pilotPixel, moments, candidates, counts) *
                           exposure;
         if (counts.rare.admit(value, in.least)) pixel.add(value);
       }

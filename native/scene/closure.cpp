@@ -57,6 +57,7 @@ constexpr ClosureInfo kTable[kClosureTypes] = {
     {"sheen", 4, 5, kReflects, kFibres},
     {"principled", 3, 3, kColors3, kScalars3, true},
     {"principled", 4, 5, kColors, kScalars, true},
+    {"holdout", 3, 5, {}, {}},
 };
 
 }  // namespace

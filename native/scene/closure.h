@@ -27,6 +27,7 @@ enum class ClosureType : uint8_t {
   kSheen,
   kPrincipled3,  // of version 3
   kPrincipled,
+  kHoldout,
 };
 
 // An input's name and its default, of a colour in all channels.
@@ -43,7 +44,7 @@ struct ClosureInfo {
   bool distribution = false;  // has the parameter
 };
 const ClosureInfo& info(ClosureType type);
-inline constexpr size_t kClosureTypes = 11;
+inline constexpr size_t kClosureTypes = 12;
 
 struct Closure {
   ClosureType type = ClosureType::kDiffuse;
@@ -66,7 +67,7 @@ struct Closure {
 // How many lobes of each class there may be, beside those that reflect diffusely about the mesh's normal.
 using LobeCounts = std::array<uint8_t, kLobeClasses>;
 inline size_t total(const LobeCounts& counts) { return std::accumulate(counts.begin(), counts.end(), size_t{0}); }
-// What it may become at most; what lets light straight through is no lobe.
+// What it may become at most; what lets light straight through, and a hole, is no lobe.
 LobeCounts mostLobes(const Closure& closure);
 // Whether light may go straight through.
 bool mayBeTransparent(const Closure& closure);

@@ -225,7 +225,6 @@ class NotUnderstood(MaterialCase):
     def test_what_has_no_lobe_is_named_and_never_magenta(self):
         self.node("ShaderNodeRGB")
         for kind, rendered in (
-            ("ShaderNodeHoldout", "black"),
             ("ShaderNodeSubsurfaceScattering", "diffuse"),
             ("ShaderNodeBsdfToon", "diffuse"),
             ("ShaderNodeBsdfHairPrincipled", "diffuse"),

@@ -2,7 +2,7 @@
 """Exposure, transparency and filters of the film."""
 
 import bpy
-from stage import ball, box, collection, diffuse, lamp, scene, stage
+from stage import add, ball, box, collection, diffuse, lamp, material, scene, stage
 
 
 def things():
@@ -82,3 +82,18 @@ def holdout_before_a_lamp():
     made.render.film_transparent = True
     bpy.data.objects["Box"].is_holdout = True
     lamp("AREA", (-1, -3, 2.2), 30, target=(-1, -7, 3), size=0.8).visible_camera = True
+
+
+@scene
+def holdout_shader():
+    """By its share of the surface."""
+    things()
+    made, tree, output = material()
+    mixed = add(tree, "MixShader", None)
+    mixed.inputs[0].default_value = 0.3
+    tree.links.new(add(tree, "Holdout").outputs[0], mixed.inputs[1])
+    tree.links.new(add(tree, "BsdfDiffuse", Color=(0.2, 0.5, 0.3, 1)).outputs[0], mixed.inputs[2])
+    tree.links.new(mixed.outputs[0], output.inputs["Surface"])
+    bpy.data.objects["Box"].data.materials[0] = made
+    bpy.data.objects["Ball"].data.materials[0], tree, output = material()
+    tree.links.new(add(tree, "Holdout").outputs[0], output.inputs["Surface"])

@@ -135,5 +135,69 @@ TEST(DataPasses, AreOfWhatIsMetFirst) {
   }
 }
 
+// What the passes of light are apart is the picture when it is put together again.
+TEST(LightPasses, MakeUpThePicture) {
+  Scene scene;
+  scene.materials = {ward({0.5f, 0.4f, 0}, {0.2f, 0.3f, 0.4f}, 0.2f, WardVariant::kWardGmd), Material{}};
+  scene.materials[1].emission.value = {2, 3, 4};
+  addSphere(scene, 16, 0);
+  addPlane(scene, 3, 0, -1);
+  addPlane(scene, 0.5f, 1, 2);
+  worldOf(scene).radiance = {0.5f, 0.6f, 0.7f};
+  Light point;
+  point.emitted = {5, 5, 5};
+  point.toWorld.t = {2, 2, 3};
+  scene.lights = {point};
+  lookFrom(scene, 0.9f, 2, 8);
+  scene.film.exposure = 1.5f;
+  for (const Integrand integrand : {Integrand::kSplit, Integrand::kJoint})
+    for (const bool lobes : {false, true}) {
+      scene.materials[0].closures.clear();
+      if (lobes) {
+        Closure diffuse, glass;
+        diffuse.colors = {ColorInput{{0.5f, 0.4f, 0}, {}}}, diffuse.scalars = {ScalarInput{0, {}}};
+        glass.type = ClosureType::kGlass;
+        glass.weight.value = {0.3f, 0.3f, 0.3f};
+        glass.colors = {ColorInput{{1, 1, 1}, {}}}, glass.scalars = {ScalarInput{0.1f, {}}, ScalarInput{1.5f, {}}};
+        scene.materials[0].closures = {diffuse, glass};
+      }
+      RenderSettings s = settings(16);
+      s.integrator = Integrator::kPath, s.integrand = integrand, s.allocation = Allocation::kEqual;
+      const FilmBuffer plain = renderScene(scene, s);
+      s.data = s.light = true;
+      const FilmBuffer film = renderScene(scene, s);
+      for (size_t i = 0; i < film.pixels.size(); ++i) {
+        EXPECT_EQ(film.pixels[i].sum, plain.pixels[i].sum);  // they are looked at, nothing more
+        for (size_t c = 0; c < 3; ++c) {
+          double sum = film.data[i].emission[c] + film.data[i].environment[c];
+          for (size_t k = 0; k < kComponents; ++k) sum += film.light[i].direct[k][c] + film.light[i].indirect[k][c];
+          EXPECT_NEAR(sum, film.pixels[i].sum[c], 1e-4 * (1 + sum)) << i << ' ' << lobes;
+        }
+      }
+      double transmitted = 0;
+      for (const LightPixel& p : film.light) transmitted += p.direct[2][0] + p.indirect[2][0];
+      EXPECT_EQ(transmitted > 0, lobes);
+    }
+}
+
+TEST(Holdout, OfAClosureIsAHoleByItsWeight) {
+  Scene scene;
+  scene.materials = {Material{}};
+  Closure hole, diffuse;
+  hole.type = ClosureType::kHoldout;
+  hole.weight.value = {0.25f, 0.25f, 0.25f};
+  diffuse.weight.value = {0.75f, 0.75f, 0.75f};
+  diffuse.colors = {ColorInput{{0.8f, 0.8f, 0.8f}, {}}}, diffuse.scalars = {ScalarInput{0, {}}};
+  scene.materials[0].closures = {hole, diffuse};
+  addPlane(scene, 9, 0);
+  worldOf(scene).radiance = {1, 1, 1};
+  lookFrom(scene, 0.3f, 0.1f, 4);
+  const FilmBuffer film = renderScene(scene, settings(256));
+  for (const Pixel& p : film.pixels) {
+    EXPECT_NEAR(p.alpha / 256, 0.75f, 1e-5f);
+    EXPECT_NEAR(film.mean(p).x, 0.6, 0.02);
+  }
+}
+
 }  // namespace
 }  // namespace wardmis

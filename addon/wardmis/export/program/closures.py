@@ -183,7 +183,7 @@ def _sheen(use: NodeUse, s: Shading, weight: Value) -> None:
 
 
 def _holdout(use: NodeUse, s: Shading, weight: Value) -> None:
-    use.note("is not supported; rendered as black")
+    s.closures.append(Closure(use, "holdout", weight, {}))
 
 
 def _subsurface(use: NodeUse, s: Shading, weight: Value) -> None:
