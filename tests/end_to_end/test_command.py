@@ -232,10 +232,15 @@ class Image(CommandTest):
 
     def test_passes_of_what_is_met_first(self):
         self.render(
-            "--spp", "2", "--passes", "position,uv,object-index=IndexOB,material-index,emission,environment=Env,depth"
+            "--spp",
+            "2",
+            "--passes",
+            "position,uv,object-index=IndexOB,material-index,emission,environment=Env,glossy-color=GlossCol,depth",
         )
         passes = exr.read(self.out).passes
-        self.assertEqual(set(passes), {"Position", "UV", "IndexOB", "Material Index", "Emission", "Env", "Depth"})
+        self.assertEqual(
+            set(passes), {"Position", "UV", "IndexOB", "Material Index", "Emission", "Env", "GlossCol", "Depth"}
+        )
         self.assertEqual(passes["UV"].shape[2], 3)
         hit = passes["Depth"][..., 0] < 1e10
         self.assertTrue(hit.sum() > 0)
