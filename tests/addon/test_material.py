@@ -563,7 +563,10 @@ class Values(MaterialCase):
             for name, value in settings:
                 with self.subTest(kind=kind, **{name: value}):
                     if name:
-                        setattr(probe, name, value)
+                        try:
+                            setattr(probe, name, value)
+                        except TypeError:  # of other kinds of trees
+                            continue
                     self.tree.links.clear()
                     for socket in probe.inputs:
                         if socket.enabled:
