@@ -156,6 +156,36 @@ def undeformed_positions(mesh: Any) -> np.ndarray:
     return _foreach(mesh.vertices, "undeformed_co", 3, np.float32)
 
 
+# --- curves and point clouds -----------------------------------------------------------------------------------------
+
+# of what has no attribute of the name "radius", as Cycles takes it
+RADIUS_OF_CURVES = 0.005 if VERSION >= (4, 0, 0) else 0.0
+RADIUS_OF_POINTS = 0.01 if VERSION >= (4, 0, 0) else 0.0
+
+# Those of a point cloud that is placed once are as round as before under a scale that is not even.
+SPHERES_STAY_ROUND = VERSION < (5, 0, 0)
+
+
+def point_values(data: Any, name: str) -> np.ndarray | None:
+    """The attribute "position", (n, 3), or "radius", (n,) float32, of curves or a point cloud; None: it has none."""
+    attribute = data.attributes.get(name)
+    kind, key, width = ("FLOAT_VECTOR", "vector", 3) if name == "position" else ("FLOAT", "value", 1)
+    if attribute is None or attribute.domain != "POINT" or attribute.data_type != kind:
+        return None
+    return _foreach(attribute.data, key, width, np.float32)
+
+
+def curve_offsets(curves: Any) -> np.ndarray:
+    """The first point of each curve, and the number of all: (curves + 1,) int."""
+    return _foreach(curves.curve_offset_data, "value", 1, np.int32).astype(np.int64)
+
+
+def curves_are_chains(curves: Any) -> bool:
+    """Whether Cycles draws them as cones, since the first of them is a Poly curve."""
+    attribute = curves.attributes.get("curve_type") if VERSION >= (5, 0, 0) else None
+    return attribute is not None and len(attribute.data) > 0 and attribute.data[0].value == 1
+
+
 # --- lights, world, objects -----------------------------------------------------------------------------------------
 
 

@@ -10,7 +10,7 @@ import bpy
 from . import compat
 from .panels import Panel
 
-SURFACES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
+SURFACES = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD"}
 
 
 class WARDMIS_OBJECT_PT_visibility(Panel, bpy.types.Panel):

@@ -28,13 +28,12 @@ EXCLUDED = {
     "NODE_DATA_PT_spot",
     "OBJECT_PT_shading",  # light and shadow linking
     "OBJECT_PT_visibility",  # holdouts
-    "PARTICLE_PT_hair_shape",
     "PHYSICS_PT_fluid_domain_render",
     "RENDER_PT_simplify",  # ours stands where Cycles' does
     "RENDER_PT_stereoscopy",
 }
 EXCLUDED_PREFIXES = (
-    "PARTICLE_PT_render_path",
+    "PARTICLE_PT_render_path_",  # of trails
     "RENDER_PT_simplify_",
     "RENDER_PT_freestyle",
     "VIEWLAYER_PT_freestyle",
@@ -124,6 +123,22 @@ class WARDMIS_RENDER_PT_light_paths(RenderPanel, bpy.types.Panel):
             draw_text(column, f"Bounces of a path: {cycles}")
         elif follows and light_paths.ends_sooner(cycles, limits):
             draw_text(column, f"Cycles shows less light here, with bounces of {cycles}", icon="INFO")
+
+
+class WARDMIS_RENDER_PT_curves(RenderPanel, bpy.types.Panel):
+    """Cycles' own settings, which the export reads: they are gone where that add-on is off, and its defaults count."""
+
+    bl_label = "Curves"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        return super().poll(context) and hasattr(context.scene, "cycles_curves")
+
+    def draw(self, context: Any) -> None:
+        settings, column = context.scene.cycles_curves, self._column()
+        column.prop(settings, "shape")
+        _row(column, settings.shape == "RIBBONS").prop(settings, "subdivisions", text="Curve Subdivisions")
 
 
 class WARDMIS_RENDER_PT_simplify(RenderPanel, bpy.types.Panel):
@@ -222,6 +237,7 @@ class WARDMIS_VIEWLAYER_PT_filter(Panel, bpy.types.Panel):
         column = self._column().column(heading="Include")
         column.prop(context.view_layer, "use_sky", text="Environment")
         column.prop(context.view_layer, "use_solid", text="Surfaces")
+        column.prop(context.view_layer, "use_strand", text="Hair")
 
 
 class WARDMIS_VIEWLAYER_PT_override(Panel, bpy.types.Panel):
@@ -240,6 +256,7 @@ _CLASSES = (
     WARDMIS_RENDER_PT_sampling,
     WARDMIS_RENDER_PT_allocation,
     WARDMIS_RENDER_PT_light_paths,
+    WARDMIS_RENDER_PT_curves,
     WARDMIS_RENDER_PT_simplify,
     WARDMIS_RENDER_PT_motion_blur,
     WARDMIS_RENDER_PT_film,

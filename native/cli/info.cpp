@@ -63,6 +63,8 @@ Verb addInfo(CLI::App& app) {
                              {"camera", scene.camera->name},
                              {"scene_counts",
                               {{"triangles", geometry.triangles},
+                               {"curve_segments", geometry.segments},
+                               {"spheres", geometry.spheres},
                                {"instances", geometry.placements.size()},
                                {"meshes", scene.meshes.size()},
                                {"materials", scene.materials.size()},
@@ -84,6 +86,8 @@ Verb addInfo(CLI::App& app) {
     fmt::print("\n  camera      {}\n", scene.camera->name);
     fmt::print("  geometry    {} triangles in {} objects of {} meshes\n", geometry.triangles,
                geometry.placements.size(), scene.meshes.size());
+    if (geometry.segments > 0) fmt::print("              {} segments of curves\n", geometry.segments);
+    if (geometry.spheres > 0) fmt::print("              {} spheres\n", geometry.spheres);
     if (scene.degenerateTriangles > 0)
       fmt::print("              {} triangles without area were dropped\n", scene.degenerateTriangles);
     fmt::print("  materials   {}, textures {}\n", scene.materials.size(), scene.images.size());

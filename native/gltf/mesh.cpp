@@ -20,7 +20,7 @@ constexpr const char* kExportAgain = "export the scene again";
 constexpr size_t kGrain = 1 << 15;
 constexpr uint64_t kMostTriangles = uint64_t(1) << 31;
 
-enum Mode { kTriangles = 4, kStrip = 5, kFan = 6 };
+enum Mode { kPoints = 0, kLines = 1, kTriangles = 4, kStrip = 5, kFan = 6 };
 
 // 0, 1, 2, ...: what a primitive without indices means.
 Array<uint32_t> consecutive(size_t n) {
@@ -29,6 +29,19 @@ Array<uint32_t> consecutive(size_t n) {
     std::iota(out.begin() + range.begin(), out.begin() + range.end(), static_cast<uint32_t>(range.begin()));
   });
   return Array<uint32_t>::of(std::move(out));
+}
+
+// What points and lines are to be rendered as; none where the file does not say.
+std::optional<Form> formOf(const Json& primitive, uint64_t mode) {
+  const auto extension = primitive.extension("WARDMIS_scene");
+  const auto shape = extension ? extension->find("shape") : std::nullopt;
+  if (!shape) return std::nullopt;
+  constexpr std::pair<std::string_view, Form> kOfLines[] = {
+      {"ribbons", Form::kRibbons}, {"tubes", Form::kTubes}, {"cones", Form::kCones}};
+  constexpr std::pair<std::string_view, Form> kOfPoints[] = {{"spheres", Form::kSpheres}};
+  if (mode != kLines && mode != kPoints)
+    primitive.fail("has a shape, which is for lines (mode 1) and points (mode 0)", kExportAgain);
+  return mode == kLines ? shape->choice(kOfLines) : shape->choice(kOfPoints);
 }
 
 // The triangles of a strip or a fan; every second one of a strip is turned so that all face the same way.
@@ -72,6 +85,21 @@ ProgramVertices programVertices(const Json& primitive, const Json& attributes, c
   return out;
 }
 
+// Not negative, and not so large that the renderer would drop a curve or a sphere.
+Array<float> readRadii(Accessors& accessors, const Json& use, const Array<Vec3f>& positions) {
+  constexpr float kLargest = 1e18f;  // Embree ignores what reaches further
+  const FloatArray radii = accessors.readFloats(use, nullptr);
+  if (radii.components != 1) use.failExpected("elements of one number");
+  for (size_t i = 0; i < radii.data.size(); i++) {
+    const float r = radii.data[i];
+    if (r < 0) use.fail(fmt::format("radius {} is {}, less than 0", i, r), kExportAgain);
+    const Vec3f p = positions[i];
+    if (std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) + r > kLargest)
+      use.fail(fmt::format("point {} reaches further than 10^18 metres", i), "scale it down");
+  }
+  return radii.data;
+}
+
 // Names the accessors of all that is wanted.
 std::vector<size_t> keyOf(const ProgramVertices& wanted, const Json& attributes) {
   std::vector<size_t> key{wanted.names.size()};
@@ -110,12 +138,13 @@ Mesh Meshes::read(const Json& json) {
   if (primitives.size() == 0) json.at("primitives").failExpected("at least one primitive");
 
   // Primitives with the same vertex arrays become one part.
-  std::map<std::tuple<size_t, size_t, size_t, std::vector<size_t>>, size_t> partOf;
+  std::map<std::tuple<size_t, size_t, size_t, size_t, std::vector<size_t>>, size_t> partOf;
   for (size_t i = 0; i < primitives.size(); i++) {
     const Json primitive = primitives[i];
     const auto mode = primitive.integerOr("mode", kTriangles, 0, 6);
-    if (mode < kTriangles) {
-      leftOut_.add("points and lines of mesh " + json.described(), "only triangles are rendered");
+    const std::optional<Form> form = formOf(primitive, mode);
+    if (mode < kTriangles && !form) {
+      leftOut_.add("points and lines of mesh " + json.described(), "they have no shape, and so no thickness");
       continue;
     }
     const auto attributes = primitive.find("attributes");
@@ -130,14 +159,17 @@ Mesh Meshes::read(const Json& json) {
     const int material = materials_.use(primitive), looked = materials_.uvSet(material);
     const int set = looked < 0 && keepUvs_ && attributes->find("TEXCOORD_0") ? 0 : looked;
     const std::string uvName = set < 0 ? "" : fmt::format("TEXCOORD_{}", set);
-    const auto normal = attributes->find("NORMAL"), uv = set < 0 ? std::nullopt : attributes->find(uvName);
+    const auto normal = form ? std::nullopt : attributes->find("NORMAL"),
+               uv = set < 0 ? std::nullopt : attributes->find(uvName);
     const auto lacks = [&](const std::string& name) {
       leftOut_.add(fmt::format("textures and direction of anisotropy of {} on primitive {} of mesh {}",
                                materials_.described(material), i, json.described()),
                    fmt::format("it has no {}: textures are looked up at (0, 0)", name));
     };
     if (set >= 0 && !uv) lacks(uvName);
-    const auto draco = primitive.extension("KHR_draco_mesh_compression");
+    const auto radius = form ? attributes->find("_RADIUS") : std::nullopt;
+    if (form && !radius) attributes->fail("has no _RADIUS, which curves and spheres need", kExportAgain);
+    const auto draco = form ? std::nullopt : primitive.extension("KHR_draco_mesh_compression");
     const Program* program = materials_.program(material);
     const ProgramVertices wanted =
         program && !draco ? programVertices(primitive, *attributes, *program) : ProgramVertices{};
@@ -149,6 +181,7 @@ Mesh Meshes::read(const Json& json) {
     const size_t vertices = draco ? 0 : accessors_.count(*position);
     attributes->forEachMember([&](std::string_view key, const Json& use) {
       if (!draco && key != "POSITION") accessors_.checkAttribute(use, key, vertices);
+      if (form && key == "_RADIUS") return;
       if (key == wanted.generated || std::ranges::find(wanted.names, key) != wanted.names.end()) return;
       if (key == "COLOR_0")
         leftOut_.add("vertex colours of mesh " + json.described() + " with " + materials_.described(material),
@@ -167,7 +200,7 @@ Mesh Meshes::read(const Json& json) {
     if (draco && (hasDraco() || !accessors_.hasData(*position))) {
       DracoPrimitive decoded = readDraco(*draco, uvName, buffers_);
       mended(decoded.mended);
-      MeshPart part{decoded.positions, decoded.normals, turned(decoded.uvs, *position), {}, {}, {}, {}, {}};
+      MeshPart part{decoded.positions, decoded.normals, turned(decoded.uvs, *position), {}, {}, {}, {}, {}, {}};
       Array<uint32_t> indices = triangles(primitive, part.positions, *position, &decoded.indices);
       if (indices.empty()) continue;
       part.primitives.push_back({material, std::move(indices)});
@@ -178,19 +211,28 @@ Mesh Meshes::read(const Json& json) {
     constexpr size_t kNone = SIZE_MAX, kAny = SIZE_MAX;
     const auto key =
         std::make_tuple(position->index(kAny, "accessors"), normal ? normal->index(kAny, "accessors") : kNone,
-                        uv ? uv->index(kAny, "accessors") : kNone, keyOf(wanted, *attributes));
+                        radius ? radius->index(kAny, "accessors") : kNone, uv ? uv->index(kAny, "accessors") : kNone,
+                        keyOf(wanted, *attributes));
     const auto [entry, isNewPart] = partOf.try_emplace(key, mesh.parts.size());
     if (isNewPart) {
       MeshPart part;
       part.positions = accessors_.read<Vec3f>(*position);
       size_t bad = 0;
       if (normal) part.normals = accessors_.read<Vec3f>(*normal, &bad);
+      if (radius) part.radii = readRadii(accessors_, *radius, part.positions);
       if (uv) part.uvs = turned(accessors_.read<Vec2f>(*uv, &bad), *uv);
       readProgramVertices(wanted, *attributes, part, bad);
       mended(bad);
       mesh.parts.push_back(std::move(part));
     }
     MeshPart& part = mesh.parts[entry->second];
+    if (form) {
+      if (const auto own = primitive.extension("WARDMIS_scene"); own && own->find("motion"))
+        leftOut_.add("motion of curves and spheres of mesh " + json.described(), "they keep their shapes");
+      part.primitives.push_back(strands(primitive, *form, *position, part));
+      part.primitives.back().material = material;
+      continue;
+    }
     if (const auto own = primitive.extension("WARDMIS_scene"); isNewPart && own)
       if (const auto motion = own->find("motion")) readMotion(*motion, part);
     Array<uint32_t> indices = triangles(primitive, part.positions, *position, nullptr);
@@ -198,6 +240,37 @@ Mesh Meshes::read(const Json& json) {
   }
   std::erase_if(mesh.parts, [](const MeshPart& part) { return part.primitives.empty(); });
   return mesh;
+}
+
+Primitive Meshes::strands(const Json& primitive, Form form, const Json& position, const MeshPart& part) {
+  const bool lines = form != Form::kSpheres;
+  const auto json = primitive.find("indices");
+  const Json place = json ? *json : position;
+  const Array<uint32_t> file = json ? accessors_.read<uint32_t>(*json) : consecutive(part.positions.size());
+  if (lines && file.size() % 2 != 0) place.fail(fmt::format("has {} ends of segments: they are no pairs", file.size()));
+  const size_t count = lines ? file.size() / 2 : file.size(), vertices = part.positions.size();
+  triangles_ += count;
+  if (triangles_ > kMostTriangles) place.fail("the scene has more than 2^31 triangles and segments", "split the scene");
+  // what is built of it: its number and its curve's, and up to four points
+  buffers_.budget.charge(count * (2 * sizeof(uint32_t) + (lines ? 5 : 2) * 4 * sizeof(float)), place);
+  Primitive out;
+  out.form = form;
+  if (const auto extension = primitive.extension("WARDMIS_scene"))
+    out.pieces = static_cast<int>(extension->integerOr("pieces", 5, 1, 16));
+  std::vector<uint32_t> indices(count);
+  for (size_t i = 0; i < count; i++) {
+    const uint32_t k = file[lines ? 2 * i : i];
+    if (k >= vertices - (lines ? 1 : 0))
+      place.fail(
+          fmt::format("{} {} begins at point {}, but there are {}", lines ? "segment" : "sphere", i, k, vertices),
+          kExportAgain);
+    if (lines && file[2 * i + 1] != k + 1)
+      place.fail(fmt::format("segment {} goes from point {} to {}, and not to the next one", i, k, file[2 * i + 1]),
+                 kExportAgain);
+    indices[i] = k;
+  }
+  out.indices = Array<uint32_t>::of(std::move(indices));
+  return out;
 }
 
 // Positions, and normals where the part has any, at equal steps of the shutter's time.

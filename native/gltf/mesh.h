@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `meshes`: triangles, with strips and fans converted and degenerate triangles dropped.
+// `meshes`: triangles, with strips and fans converted and degenerate triangles dropped; curves and spheres.
 #pragma once
 
 #include <vector>
@@ -21,7 +21,8 @@ class Meshes {
  public:
   Meshes(const Json& root, Accessors& accessors, Buffers& buffers, Materials& materials, LeftOut& leftOut);
 
-  // The index in Scene::meshes of the mesh whose index stands at `use`; read when it is first used. -1: no triangles.
+  // The index in Scene::meshes of the mesh whose index stands at `use`; read when it is first used. -1: nothing to
+  // render.
   int use(const Json& use);
   // From here on also where no material looks anything up by them.
   void keepUvs() { keepUvs_ = true; }
@@ -32,6 +33,8 @@ class Meshes {
   // decoded: the triangles' indices, where they do not come from an accessor.
   Array<uint32_t> triangles(const Json& primitive, const Array<Vec3f>& positions, const Json& position,
                             const Array<uint32_t>* decoded);
+  // The segments of curves, or the spheres, of a primitive whose extension has a shape.
+  Primitive strands(const Json& primitive, Form form, const Json& position, const MeshPart& part);
   void readProgramVertices(const ProgramVertices& wanted, const Json& attributes, MeshPart& part, size_t& bad);
   void readMotion(const Json& json, MeshPart& part);
   Array<Vec2f> turned(const Array<Vec2f>& uvs, const Json& place);

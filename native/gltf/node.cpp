@@ -274,7 +274,7 @@ void readNodes(const Json& root, Accessors& accessors, Buffers& buffers, Meshes&
     if (const auto use = node.find("mesh")) {
       const int mesh = meshes.use(*use);
       if (mesh < 0)
-        leftOut.add("object " + node.described(), "its mesh has no triangles");
+        leftOut.add("object " + node.described(), "its mesh has nothing to render");
       else {
         Instance instance{node.name(),
                           mesh,

@@ -338,6 +338,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       shadow.kind = kCastsShadow;
       if constexpr (kGeneral) shadow.path = x.path.shadow();
       shadow.path.time = x.path.time;
+      shadow.left = x.strand;
       if (l.distance < 1e30f) {
         // up to just before the emitter: from the moved origin to the same point, by way of differences, since the
         // point itself would be rounded to a place beside or behind the emitter far from the origin
@@ -383,6 +384,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     Ray ray;
     ray.origin = x.leave(d);
     ray.direction = d;
+    ray.left = x.strand;
     ray.kind = !ahead ? kSeenByTransmission : diffuse ? kSeenByDiffuse : kSeenByGlossy;
     ray.path =
         x.path.scattered(static_cast<uint16_t>((diffuse ? kDiffuseRay : kGlossyRay) | (sharp ? kSingularRay : 0) |

@@ -25,6 +25,7 @@ struct InteractionOf {
   PathState path;  // of the ray that came here
   float rayLength = 0;
 
+  StrandId strand;      // the curve or sphere that it is on
   float clearance = 0;  // bound on the rounding of `position` and of an intersection there, along the normal
 
   // Start of a ray leaving towards the side of the geometric normal on which `direction` lies, so that it does not
@@ -117,21 +118,65 @@ template <size_t K>
 Framef resolveLobes(const Scene& scene, const Material& material, const ShadedPoint& point, Vec2f uv, Vec3f tangent,
                     const LobeNumbers& numbers, LobeSurface<K>& surface, Rgb& emission);
 
-}  // namespace detail
+// The surface's inputs at the point, and the frame in which they are told. tangent(): direction of the anisotropy.
+template <uint32_t N, size_t K, class Tangent>
+void resolveSurface(const Scene& scene, const Material& m, const ShadedPoint& point, Vec2f uv, Tangent&& tangent,
+                    const LobeNumbers& lobes, InteractionOf<SurfaceOf<N, K>>& x) {
+  if constexpr ((N & kNeedsLobes) != 0) {
+    x.frame = resolveLobes<K>(scene, m, point, uv, tangent(), lobes, x.surface, x.emission);
+  } else {
+    Vec3f ns = point.normal;
+    const auto color = [&](const ColorInput& c) { return c.texture.texture >= 0 ? evaluate(scene, c, uv) : c.value; };
+    const auto alpha = [&](const ScalarInput& c) {
+      return c.texture.texture >= 0 ? evaluateAlpha(scene, c, uv) : c.value;
+    };
+    if (m.program) [[unlikely]] {
+      resolve(scene, m, point, uv, x.surface, x.emission, ns);
+    } else {
+      if constexpr ((N & kNeedsDiffuse) != 0) x.surface.diffuse = color(m.diffuse);
+      if constexpr ((N & kNeedsSpecular) != 0) {
+        x.surface.specular = color(m.specular);
+        x.surface.ax = alpha(m.alphaX);
+        x.surface.ay = alpha(m.alphaY);
+      }
+      if (!isBlack(m.emission.value)) x.emission = color(m.emission);
+    }
+    if constexpr ((N & kNeedsSpecular) != 0) x.surface.variant = m.variant;
 
-namespace detail {
+    if ((N & kNeedsSpecular) != 0 && x.surface.ax != x.surface.ay) {
+      x.frame = turned(Framef::around(ns, tangent()), m.rotation);
+    } else {
+      x.frame = Framef::around(ns);
+    }
+  }
+}
 
 // placement: of the hit, where it is at the ray's time.
 template <uint32_t N, size_t K>
 InteractionOf<SurfaceOf<N, K>> interactWith(const Scene& scene, const LobeNumbers& lobes, const Placement& placement,
                                             const Shape& shape, const Ray& ray, const Hit& hit) {
   const Material& m = scene.materials[static_cast<size_t>(shape.material)];
-  const uint32_t* i = shape.indices + 3 * size_t{hit.triangle};
-
   InteractionOf<SurfaceOf<N, K>> x;
   x.material = shape.material;
   x.placement = hit.placement;
   x.wo = -ray.direction;
+  x.path = ray.path;
+  x.rayLength = hit.t;
+  if (shape.strands != nullptr) [[unlikely]] {
+    const StrandPoint on = strandPoint(placement, shape, ray, hit);
+    uint32_t i[3];
+    endsOf(*shape.primitive, hit.triangle, i);
+    x.position = on.position;
+    x.geometric = on.normal;
+    x.strand = {hit.placement, hit.shape, shape.strands->strandOf(hit.triangle)};
+    const Vec2f uv = shape.part->uvs.empty() ? Vec2f{} : interpolate(shape.part->uvs, i, hit.u, 0);
+    const ShadedPoint point{placement, shape,     hit.triangle, hit.u,     hit.v,  x.position,
+                            on.facing, on.normal, x.wo,         on.turned, x.path, hit.t};
+    resolveSurface<N, K>(
+        scene, m, point, uv, [&] { return on.along; }, lobes, x);
+    return x;
+  }
+  const uint32_t* i = shape.indices + 3 * size_t{hit.triangle};
   // from one corner: far from the origin, weights that do not quite sum to 1 would move the point
   const Corners corner = cornersOf(shape, hit.triangle, ray.path.time);
   const Vec3f a = corner[0];
@@ -154,42 +199,14 @@ InteractionOf<SurfaceOf<N, K>> interactWith(const Scene& scene, const LobeNumber
   x.geometric = ng;
   x.clearance = clearance(placement, corner, ng);
   if (!shape.part->normals.empty()) ns = bent(ns, ng, x.wo);
-  x.path = ray.path;
-  x.rayLength = hit.t;
 
   // UVs are in the file only where a texture is looked up (the reader leaves the others out).
   const Vec2f uv = shape.part->uvs.empty() ? Vec2f{} : interpolate(shape.part->uvs, i, hit.u, hit.v);
   const ShadedPoint point{placement, shape, hit.triangle, hit.u,  hit.v,  x.position,
                           ng,        ns,    x.wo,         turned, x.path, hit.t};
-  if constexpr ((N & kNeedsLobes) != 0) {
-    x.frame = resolveLobes<K>(scene, m, point, uv, tangent(placement, shape, i, corner, x.position), lobes, x.surface,
-                              x.emission);
-    return x;
-  } else {
-    const auto color = [&](const ColorInput& c) { return c.texture.texture >= 0 ? evaluate(scene, c, uv) : c.value; };
-    const auto alpha = [&](const ScalarInput& c) {
-      return c.texture.texture >= 0 ? evaluateAlpha(scene, c, uv) : c.value;
-    };
-    if (m.program) [[unlikely]] {
-      resolve(scene, m, point, uv, x.surface, x.emission, ns);
-    } else {
-      if constexpr ((N & kNeedsDiffuse) != 0) x.surface.diffuse = color(m.diffuse);
-      if constexpr ((N & kNeedsSpecular) != 0) {
-        x.surface.specular = color(m.specular);
-        x.surface.ax = alpha(m.alphaX);
-        x.surface.ay = alpha(m.alphaY);
-      }
-      if (!isBlack(m.emission.value)) x.emission = color(m.emission);
-    }
-    if constexpr ((N & kNeedsSpecular) != 0) x.surface.variant = m.variant;
-
-    if ((N & kNeedsSpecular) != 0 && x.surface.ax != x.surface.ay) {
-      x.frame = detail::turned(Framef::around(ns, tangent(placement, shape, i, corner, x.position)), m.rotation);
-    } else {
-      x.frame = Framef::around(ns);
-    }
-    return x;
-  }
+  resolveSurface<N, K>(
+      scene, m, point, uv, [&] { return tangent(placement, shape, i, corner, x.position); }, lobes, x);
+  return x;
 }
 
 }  // namespace detail

@@ -30,7 +30,8 @@ int tilesAcross(int pixels) { return (pixels + kTileSize - 1) / kTileSize; }
 
 // Whether rays of the surface's techniques can find light.
 bool surfaceRays(const BuiltScene& built, uint32_t needs) {
-  return built.emitters.anyShared() || built.emitters.anySky() || (needs & kNeedsBounces) != 0;
+  const Emitters& e = built.emitters;
+  return e.anyShared() || e.anySky() || e.anyStrands() || (needs & kNeedsBounces) != 0;
 }
 
 // Whether there is light that takes away from other light.

@@ -55,6 +55,7 @@ Hit trace(const RenderScene& world, Ray& ray, uint32_t key, Rgb& weight, Along&&
     }
     weight = weight * through / q;
     ray.tMin = detail::behind(x, ray.direction, hit.t);
+    ray.left = x.strand;
     ray.path = ray.path.passed();
   }
 }
@@ -74,6 +75,7 @@ Rgb transmittance(const RenderScene& world, Ray ray) {
     left *= x.surface.transparent;
     if (!(maxComponent(left) > 0)) return kNone;
     ray.tMin = detail::behind(x, ray.direction, hit.t);
+    ray.left = x.strand;
     if (!(ray.tMin < ray.tMax)) return left;
     ray.path = ray.path.passed();
   }

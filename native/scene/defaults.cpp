@@ -36,7 +36,17 @@ Box boundsOf(const Scene& scene) {
   for (size_t m = 0; m < scene.meshes.size(); ++m)
     for (const MeshPart& part : scene.meshes[m].parts)
       for (const Primitive& primitive : part.primitives)
-        for (const uint32_t i : primitive.indices.data) ofMesh[m].add(toDouble(part.positions[i]));
+        for (const uint32_t i : primitive.indices.data) {
+          if (primitive.form == Form::kTriangles) {
+            ofMesh[m].add(toDouble(part.positions[i]));
+            continue;
+          }
+          for (uint32_t k = i; k <= (primitive.form == Form::kSpheres ? i : i + 1); ++k) {
+            const Vec3d p = toDouble(part.positions[k]);
+            const double r = part.radii[k];
+            ofMesh[m].add(p - Vec3d{r, r, r}), ofMesh[m].add(p + Vec3d{r, r, r});
+          }
+        }
   Box all;
   for (const Instance& instance : scene.instances) {
     const Affine& to = instance.toWorld;
@@ -92,7 +102,7 @@ void addDefaults(Scene& scene) {
     Box box = boundsOf(scene);
     if (box.empty()) {
       box = {{-1, -1, -1}, {1, 1, 1}};
-      scene.notes.emplace_back("the scene has no triangles: the image shows its background alone");
+      scene.notes.emplace_back("the scene has nothing to render: the image shows its background alone");
     }
     scene.camera = viewOf(box, scene.film);
     scene.notes.emplace_back("the scene has no camera: a view of all that it holds is used (--no-defaults refuses it)");

@@ -66,10 +66,18 @@ struct Material {
   }
 };
 
-// A run of triangles of one mesh with one material.
+// What a primitive is made of: triangles, or what has a radius at each of its points. Curves are Catmull-Rom splines
+// through their points: flat ones that always face the ray, or tubes; or chains of cones.
+enum class Form : uint8_t { kTriangles, kRibbons, kTubes, kCones, kSpheres };
+
+// A run of triangles, of segments of curves, or of spheres of one mesh with one material.
 struct Primitive {
   int material = 0;
-  Array<uint32_t> indices;  // 3 per triangle, all < positions.size(); no degenerate triangles
+  // All < positions.size(). 3 per triangle, none degenerate; of each segment the first of two points, the next one
+  // being the other (those that follow on one another are of one curve); of each sphere its centre.
+  Array<uint32_t> indices;
+  Form form = Form::kTriangles;
+  int pieces = 5;  // ribbons: flat ones that make a segment
 };
 
 // What programs read of the vertices: `components` numbers each; 0: there is nothing of the name. UVs: v = 0 at the
@@ -88,6 +96,7 @@ struct MeshPart {
   Array<Vec3f> generated;                   // Generated coordinates
   // Where it deforms: at equal steps of the shutter's time, the frame's own among them. Normals where it has any.
   std::vector<Array<Vec3f>> movedPositions, movedNormals;
+  Array<float> radii;  // of curves and spheres, as many as positions, not negative
   std::vector<Primitive> primitives;
 };
 struct Mesh {

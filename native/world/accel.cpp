@@ -13,32 +13,50 @@
 namespace wardmis {
 namespace {
 
-// Embree reads rays through these; the visibility kind travels in ray.flags for the filter.
+// Embree reads rays through these; the visibility kind travels in ray.flags for the filter, the ray itself beside its
+// context.
 #if RTC_VERSION_MAJOR >= 4
-void trace(RTCScene scene, RTCRayHit& rh) {
+struct Query : RTCRayQueryContext {
+  const Ray* ray;
+};
+void trace(RTCScene scene, RTCRayHit& rh, const Ray& ray) {
+  Query query;
+  rtcInitRayQueryContext(&query);
+  query.ray = &ray;
   RTCIntersectArguments args;
   rtcInitIntersectArguments(&args);
   args.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
+  args.context = &query;
   rtcIntersect1(scene, &rh, &args);
 }
-void shadow(RTCScene scene, RTCRay& r) {
+void shadow(RTCScene scene, RTCRay& r, const Ray& ray) {
+  Query query;
+  rtcInitRayQueryContext(&query);
+  query.ray = &ray;
   RTCOccludedArguments args;
   rtcInitOccludedArguments(&args);
   args.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
+  args.context = &query;
   rtcOccluded1(scene, &r, &args);
 }
 #else
-void trace(RTCScene scene, RTCRayHit& rh) {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-  rtcIntersect1(scene, &context, &rh);
+struct Query : RTCIntersectContext {
+  const Ray* ray;
+};
+Query queryOf(const Ray& ray) {
+  Query query;
+  rtcInitIntersectContext(&query);
+  query.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  query.ray = &ray;
+  return query;
 }
-void shadow(RTCScene scene, RTCRay& r) {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-  rtcOccluded1(scene, &context, &r);
+void trace(RTCScene scene, RTCRayHit& rh, const Ray& ray) {
+  Query query = queryOf(ray);
+  rtcIntersect1(scene, &query, &rh);
+}
+void shadow(RTCScene scene, RTCRay& r, const Ray& ray) {
+  Query query = queryOf(ray);
+  rtcOccluded1(scene, &query, &r);
 }
 #endif
 
@@ -102,6 +120,44 @@ struct Accel::Impl {
     }
   }
 
+  // Rejects, besides, what the ray leaves, and the inside of curves and spheres, as Cycles has them.
+  static void filterStrands(const RTCFilterFunctionNArguments* args) {
+    const auto* impl = static_cast<const Impl*>(args->geometryUserPtr);
+    const Ray& ray = *static_cast<const Query*>(args->context)->ray;
+    for (unsigned i = 0; i < args->N; ++i) {
+      if (args->valid[i] == 0) continue;
+      const unsigned instance = RTCHitN_instID(args->hit, args->N, i, 0), id = RTCHitN_geomID(args->hit, args->N, i);
+      const bool instanced = instance != RTC_INVALID_GEOMETRY_ID;
+      const Top& top = impl->tops[instanced ? instance : id];
+      const uint32_t shape = top.shape + (instanced ? id : 0);
+      const Strands& strands = *impl->geometry->shapes[shape].strands;
+      const StrandId met{top.placement, shape, strands.strandOf(RTCHitN_primID(args->hit, args->N, i))};
+      const float away = RTCHitN_Ng_x(args->hit, args->N, i) * RTCRayN_dir_x(args->ray, args->N, i) +
+                         RTCHitN_Ng_y(args->hit, args->N, i) * RTCRayN_dir_y(args->ray, args->N, i) +
+                         RTCHitN_Ng_z(args->hit, args->N, i) * RTCRayN_dir_z(args->ray, args->N, i);
+      const bool seen = impl->visibility.empty() || (impl->visibility[top.placement] & ray.kind) != 0;
+      if (!seen || met == ray.left || (strands.form != Form::kRibbons && away > 0)) args->valid[i] = 0;
+    }
+  }
+
+  RTCGeometry surfaceOf(const Shape& s) { return s.strands != nullptr ? strands(*s.strands) : triangles(s); }
+  RTCGeometry strands(const Strands& s) {
+    const RTCGeometryType type = s.form == Form::kRibbons ? RTC_GEOMETRY_TYPE_FLAT_CATMULL_ROM_CURVE
+                                 : s.form == Form::kTubes ? RTC_GEOMETRY_TYPE_ROUND_CATMULL_ROM_CURVE
+                                 : s.form == Form::kCones ? RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE
+                                                          : RTC_GEOMETRY_TYPE_SPHERE_POINT;
+    RTCGeometry g = rtcNewGeometry(device, type);
+    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, s.points.data(), 0,
+                               sizeof(ControlPoint), s.points.size());
+    if (s.form != Form::kSpheres)
+      rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, s.first.data(), 0, sizeof(uint32_t),
+                                 s.first.size());
+    if (s.form == Form::kRibbons) rtcSetGeometryTessellationRate(g, static_cast<float>(s.pieces));
+    rtcSetGeometryUserData(g, this);
+    rtcSetGeometryIntersectFilterFunction(g, filterStrands);
+    rtcSetGeometryOccludedFilterFunction(g, filterStrands);
+    return g;
+  }
   RTCGeometry triangles(const Shape& s) {
     RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     const size_t steps = s.motion != nullptr ? s.motion->size() : 1;
@@ -113,8 +169,8 @@ struct Accel::Impl {
                                s.triangles);
     return g;
   }
-  void finish(RTCGeometry g, bool filtered) {
-    if (filtered) {
+  void finish(RTCGeometry g, const Shape& s, bool filtered) {
+    if (filtered && s.strands == nullptr) {
       rtcSetGeometryUserData(g, this);
       rtcSetGeometryIntersectFilterFunction(g, filter);
       rtcSetGeometryOccludedFilterFunction(g, filter);
@@ -167,8 +223,8 @@ Accel::Accel(const Geometry& geometry, int threads) : impl_(std::make_unique<Imp
     const Placement& placement = geometry.placements[p];
     if (placement.flat) {
       for (uint32_t s = placement.firstShape; s < placement.firstShape + placement.shapes; ++s) {
-        RTCGeometry g = a.triangles(geometry.shapes[s]);
-        a.finish(g, filtered[p] != 0);
+        RTCGeometry g = a.surfaceOf(geometry.shapes[s]);
+        a.finish(g, geometry.shapes[s], filtered[p] != 0);
         rtcAttachGeometryByID(a.scene, g, static_cast<unsigned>(a.tops.size()));
         rtcReleaseGeometry(g);
         a.tops.push_back({p, s});
@@ -179,8 +235,9 @@ Accel::Accel(const Geometry& geometry, int threads) : impl_(std::make_unique<Imp
     if (sharedScene == nullptr) {
       sharedScene = a.shared.emplace_back(a.newScene());
       for (uint32_t s = 0; s < placement.shapes; ++s) {
-        RTCGeometry g = a.triangles(geometry.shapes[placement.firstShape + s]);
-        a.finish(g, filteredShape[placement.firstShape + s] != 0);
+        const Shape& shape = geometry.shapes[placement.firstShape + s];
+        RTCGeometry g = a.surfaceOf(shape);
+        a.finish(g, shape, filteredShape[placement.firstShape + s] != 0);
         rtcAttachGeometryByID(sharedScene, g, s);
         rtcReleaseGeometry(g);
       }
@@ -206,7 +263,7 @@ Hit Accel::intersect(const Ray& ray) const {
   setRay(rh.ray, ray);
   rh.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  trace(impl_->scene, rh);
+  trace(impl_->scene, rh, ray);
   Hit h;
   if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID) return h;
   h.t = rh.ray.tfar;
@@ -226,7 +283,7 @@ Hit Accel::intersect(const Ray& ray) const {
 bool Accel::occluded(const Ray& ray) const {
   RTCRay r;
   setRay(r, ray);
-  shadow(impl_->scene, r);
+  shadow(impl_->scene, r, ray);
   return r.tfar < 0;
 }
 

@@ -17,13 +17,16 @@ struct Ray {
   float tMin = 1e-15f, tMax = 3.4e38f;
   Visibility kind = kSeenByCamera;
   PathState path;  // for programs
+  StrandId left;   // what it does not meet: the curve or the sphere that it leaves
 };
 
 struct Hit {
   float t = 3.4e38f;
-  float u = 0, v = 0;     // barycentric weights of the second and third vertex
+  // Barycentric weights of the second and third vertex; of a curve how far along its segment, and, of a ribbon, the
+  // sine of the angle about it.
+  float u = 0, v = 0;
   Vec3f normal{0, 0, 0};  // geometric, not normalised; space of the shape (world if the placement is flat)
-  uint32_t placement = ~0u, shape = ~0u, triangle = 0;
+  uint32_t placement = ~0u, shape = ~0u, triangle = 0;  // or segment, or sphere
 
   bool valid() const { return placement != ~0u; }
 };

@@ -237,6 +237,10 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Env
     for (uint32_t s = placement.firstShape; s < placement.firstShape + placement.shapes; ++s) {
       Shape& shape = geometry.shapes[s];
       if (isBlack(scene.materials[static_cast<size_t>(shape.material)].emission.value)) continue;
+      if (shape.strands != nullptr) {
+        strands_ = true;
+        continue;
+      }
       shape.emitterOffset = offset;
       offset += shape.triangles;
       std::vector<float>& strength = ofShape[s];
@@ -552,6 +556,7 @@ bool Emitters::meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax,
 
 float Emitters::trianglePdf(const Placement& p, const Hit& hit, Vec3f direction, float time) const {
   const Shape& shape = geometry_.shapes[hit.shape];
+  if (shape.strands != nullptr) return 0;
   const auto [a, b, c] = Geometry::corners(p, shape, hit.triangle, time);
   const float cosArea = std::abs(dot(direction, cross(b - a, c - a))) * 0.5f;
   if (!(cosArea > 0)) return 0;

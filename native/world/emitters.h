@@ -44,6 +44,8 @@ class Emitters {
   bool anyExclusive() const { return exclusive_; }
   // Whether surfaces see a sky.
   bool anySky() const { return sky_; }
+  // Whether curves or spheres shine, which are not aimed at.
+  bool anyStrands() const { return strands_; }
   uint64_t emissiveTriangles() const { return triangles_; }
 
   // bounces: by which the path has come to `from`; time: of the path.
@@ -112,7 +114,7 @@ class Emitters {
   std::vector<Triangle> emissive_;           // emitters lamps_.size() ...
   AliasTable table_;                         // over lamps, then emissive triangles
   std::vector<uint32_t> finite_, infinite_;  // indices of the lamps that a ray can meet
-  bool shared_ = false, exclusive_ = false, sky_ = false;
+  bool shared_ = false, exclusive_ = false, sky_ = false, strands_ = false;
   uint64_t triangles_ = 0;
 };
 

@@ -45,12 +45,36 @@ Corners movedCorners(const Shape& s, const uint32_t* i, float time) {
   return {mix(i[0]), mix(i[1]), mix(i[2])};
 }
 
+namespace {
+
+// Whether curves and spheres keep their shapes: it turns, mirrors and scales all alike.
+bool keepsRound(const Affine& m) {
+  constexpr float kRounding = 1e-5f;
+  const float x = dot(m.x, m.x), y = dot(m.y, m.y), z = dot(m.z, m.z), most = kRounding * std::max({x, y, z});
+  return std::max({std::abs(x - y), std::abs(x - z), std::abs(dot(m.x, m.y)), std::abs(dot(m.x, m.z)),
+                   std::abs(dot(m.y, m.z))}) <= most;
+}
+bool hasStrands(const Mesh& mesh) {
+  return std::ranges::any_of(mesh.parts, [](const MeshPart& p) { return !p.radii.empty(); });
+}
+
+}  // namespace
+
 Geometry::Geometry(const Scene& scene) {
   std::vector<uint32_t> uses(scene.meshes.size(), 0);
   for (const Instance& i : scene.instances) ++uses[static_cast<size_t>(i.mesh)];
 
   const auto addShapes = [&](const Mesh& mesh, const Affine* transform) {
     for (const MeshPart& part : mesh.parts) {
+      if (!part.radii.empty()) {
+        for (const Primitive& p : part.primitives) {
+          strands.push_back(std::make_unique<const Strands>(part, p, transform));
+          Shape shape{&part};
+          shape.material = p.material, shape.strands = strands.back().get(), shape.primitive = &p;
+          shapes.push_back(shape);
+        }
+        continue;
+      }
       // A copy even where nothing moves: Embree reads 16 bytes at each vertex, also at the last one.
       std::vector<Vec3f>& placed = positions.emplace_back(part.positions.size() + 1);
       const Vec3f* own = placed.data();
@@ -79,7 +103,8 @@ Geometry::Geometry(const Scene& scene) {
   placements.reserve(scene.instances.size());
   for (const Instance& instance : scene.instances) {
     const auto m = static_cast<size_t>(instance.mesh);
-    const bool flat = uses[m] == 1 && !instance.motion && !deforms(scene.meshes[m]);
+    const bool flat = uses[m] == 1 && !instance.motion && !deforms(scene.meshes[m]) &&
+                      (!hasStrands(scene.meshes[m]) || keepsRound(instance.toWorld));
     auto& [first, count] = sharedShapes[m];
     if (flat || first == kNone) {
       first = static_cast<uint32_t>(shapes.size());
@@ -90,7 +115,11 @@ Geometry::Geometry(const Scene& scene) {
     placements.push_back({instance.toWorld, instance.mesh, first, count, instance.holdout, flat, instance.visibility, 0,
                           &instance.name, instance.object.get(),
                           instance.motion ? &frames.emplace_back(*instance.motion) : nullptr});
-    for (uint32_t s = first; s < first + count; ++s) triangles += shapes[s].triangles;
+    for (uint32_t s = first; s < first + count; ++s) {
+      triangles += shapes[s].triangles;
+      if (const Strands* const own = shapes[s].strands)
+        (own->form == Form::kSpheres ? spheres : segments) += own->segments();
+    }
   }
 
   lobes = numberLobes(scene, shapes);
@@ -106,6 +135,7 @@ Geometry::Geometry(const Scene& scene) {
   tbb::parallel_for(size_t{0}, shapes.size(), [&](size_t s) {
     auto& [lo, hi] = boxes[s];
     const Shape& shape = shapes[s];
+    if (shape.strands != nullptr) return shape.strands->growBox(lo, hi);
     for (size_t i = 0; i < size_t{shape.triangles} * 3; ++i) grow(lo, hi, shape.positions[shape.indices[i]]);
     if (shape.motion == nullptr) return;
     for (const Vec3f* step : *shape.motion)

@@ -6,11 +6,13 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <vector>
 
 #include "mis/technique.h"
 #include "scene/scene.h"
 #include "world/motion.h"
+#include "world/strands.h"
 
 namespace wardmis {
 
@@ -23,6 +25,9 @@ struct Shape {
   int material = 0;
   uint32_t emitterOffset = 0;  // emissive shapes: of the first triangle, from the placement's firstEmitter
   const std::vector<const Vec3f*>* motion = nullptr;  // positions at equal steps of the time; null: it keeps its shape
+  // Of curves and spheres, instead of positions, indices and triangles.
+  const Strands* strands = nullptr;
+  const Primitive* primitive = nullptr;
 };
 
 using Corners = std::array<Vec3f, 3>;
@@ -70,8 +75,9 @@ struct Geometry {
   std::deque<MovingFrame> frames;               // of placements that move
   std::deque<std::vector<const Vec3f*>> moved;  // of shapes that deform
   LobeNumbers lobes;                            // of the shapes' materials
-  uint64_t triangles = 0;                       // placed, instances counted
-  Vec3f lower{0, 0, 0}, upper{0, 0, 0};         // bounds, world space
+  std::vector<std::unique_ptr<const Strands>> strands;
+  uint64_t triangles = 0, segments = 0, spheres = 0;  // placed, instances counted
+  Vec3f lower{0, 0, 0}, upper{0, 0, 0};               // bounds, world space
 
   explicit Geometry(const Scene& scene);
   Vec3f center() const { return (lower + upper) * 0.5f; }

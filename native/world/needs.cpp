@@ -70,6 +70,8 @@ std::vector<std::string> leftOut(const Scene& scene, uint32_t n, const Emitters&
     out.emplace_back(emitters.anyShared()
                          ? "nothing reflects: nothing to allocate, no pilot"
                          : "only lights without area: only light samples reach them, nothing to allocate, no pilot");
+  if (emitters.anyStrands())
+    out.emplace_back("curves or spheres that shine: not aimed at, the surfaces' own samples find them");
   if (emitters.emissiveTriangles() == 0) out.emplace_back("no emissive mesh: no emissive triangles listed");
   return out;
 }
@@ -81,7 +83,7 @@ void requireMemoryFor(const Scene& scene) {
   for (size_t m = 0; m < scene.meshes.size(); ++m)
     for (const MeshPart& part : scene.meshes[m].parts)
       for (const Primitive& p : part.primitives)
-        if (!isBlack(scene.materials[static_cast<size_t>(p.material)].emission.value))
+        if (p.form == Form::kTriangles && !isBlack(scene.materials[static_cast<size_t>(p.material)].emission.value))
           emissive[m] += p.indices.size() / 3;
   uint64_t emitters = 0;  // at most 5 * 10^7 * 2^31
   for (const Instance& i : scene.instances) emitters += emissive[static_cast<size_t>(i.mesh)];

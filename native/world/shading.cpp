@@ -71,6 +71,10 @@ void orthonormals(Vec3f n, Vec3f& a, Vec3f& b) {
 void barycentric(Vec3f e1, Vec3f e2, Vec3f d, float& du, float& dv) {
   const float g11 = dot(e1, e1), g12 = dot(e1, e2), g22 = dot(e2, e2), b1 = dot(e1, d), b2 = dot(e2, d);
   const float det = g11 * g22 - g12 * g12;
+  if (g22 == 0) {  // along a curve
+    du = g11 > 0 ? b1 / g11 : 0, dv = 0;
+    return;
+  }
   du = det > 0 ? (g22 * b1 - g12 * b2) / det : 0;
   dv = det > 0 ? (g11 * b2 - g12 * b1) / det : 0;
 }
@@ -130,23 +134,28 @@ void fillAttributes(const ShadedPoint& p, const Program& program, const uint32_t
 void fill(const Scene& scene, const ShadedPoint& p, const Program& program, ShadingContext& c) {
   const FrameOf frame{scene.zUp};
   const MeshPart& part = *p.shape.part;
-  const uint32_t* i = p.shape.indices + 3 * size_t{p.triangle};
+  const bool strand = p.shape.strands != nullptr;
+  uint32_t ends[3];
+  if (strand) endsOf(*p.shape.primitive, p.triangle, ends);
+  const uint32_t* i = strand ? ends : p.shape.indices + 3 * size_t{p.triangle};
   c.position = {frame(p.position), {}, {}};
   c.normal = frame(p.normal);
   c.trueNormal = frame(p.geometric);
   c.incoming = frame(p.wo);
-  c.backfacing = p.turned != (p.placement.toWorld.determinant() < 0);
+  c.backfacing = p.turned != (!strand && p.placement.toWorld.determinant() < 0);
   c.materialIndex = scene.materials[static_cast<size_t>(p.shape.material)].index;
 
-  Linear at{p.u, p.v, 0, 0, 0, 0};
+  Linear at{p.u, strand ? 0 : p.v, 0, 0, 0, 0};  // along a curve from one end of its segment to the other
   if ((program.reads & kReadsShift) != 0) {
     const float size = pixelSize(scene, p);
     orthonormals(c.trueNormal, c.position.dx, c.position.dy);
     c.position.dx *= size;
     c.position.dy *= size;
-    const Corners corner = cornersOf(p.shape, p.triangle, p.path.time);
+    const Corners corner = strand ? Corners{part.positions[i[0]], part.positions[i[1]], part.positions[i[2]]}
+                                  : cornersOf(p.shape, p.triangle, p.path.time);
     const auto edge = [&](size_t k) {
       const Vec3f e = corner[k] - corner[0];
+      if (strand) return frame(p.placement.toWorld.vector(e));
       return frame(p.placement.flat ? e : p.placement.toWorld.vector(e));
     };
     const Vec3f e1 = edge(1), e2 = edge(2);
@@ -154,6 +163,7 @@ void fill(const Scene& scene, const ShadedPoint& p, const Program& program, Shad
     barycentric(e1, e2, c.position.dy, at.duy, at.dvy);
   }
   c.parametric = at.of({1, 0, 0}, {0, 1, 0}, {0, 0, 0});
+  if (strand) c.parametric = {{p.u, p.v, 0}, {at.dux, 0, 0}, {at.duy, 0, 0}};
   // the mesh's own positions, whether the placement is flat or not
   const auto [o0, o1, o2] = p.shape.motion != nullptr
                                 ? cornersOf(p.shape, p.triangle, p.path.time)

@@ -7,16 +7,17 @@
 
 namespace wardmis {
 
-// A point of a triangle as a ray sees it. World space; unit vectors.
+// A point of a triangle, or of a curve or sphere, as a ray sees it. World space; unit vectors.
 struct ShadedPoint {
   const Placement& placement;
   const Shape& shape;
   uint32_t triangle;
-  float u, v;  // barycentric weights of the second and third vertex
+  float u, v;  // as of a Hit
   Vec3f position;
   Vec3f geometric, normal;  // on the side of wo
   Vec3f wo;
-  bool turned;  // the triangle's own normal, by the order of its vertices as placed, looks the other way
+  bool turned;  // the triangle's own normal, by the order of its vertices as placed, looks the other way; a curve or
+                // sphere is seen from inside
   PathState path;
   float rayLength;
 };

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Scenes for test_shapes.py of what this renderer cannot draw, and of what bends shapes; entries as those of tests/cycles."""
+"""Scenes for test_shapes.py of what is made in unusual ways, and of what bends shapes; entries as those of tests/cycles."""
 
 from __future__ import annotations
 
@@ -9,10 +9,6 @@ from scenes.instances import geometry_nodes, particles
 from stage import Scene, ball, box, mesh, place, square, stage
 
 SCENES: list[Scene] = []
-# the objects that Cycles sees, all or in part, and this renderer does not
-NAMED = {"hair_strands": {"Fur"}, "nodes_without_a_mesh": {"Ball"}}
-if bpy.app.version >= (4, 0, 0):  # in 3.4 they cannot be filled from Python
-    NAMED["hair_curves"] = {"Curves"}
 
 
 def form(build):
@@ -35,7 +31,7 @@ def hair_curves():
     stage()
     data = bpy.data.hair_curves.new("Curves")
     made = place("Curves", data, (0, 0, 1))
-    if "hair_curves" in NAMED:
+    if hasattr(data, "add_curves"):  # in 3.4 they cannot be filled from Python
         data.add_curves([3, 3])
         points = [(x, 0.1 * k, z) for k, x in enumerate((-0.8, 0.8)) for z in (-0.5, 0, 0.5)]
         data.attributes["position"].data.foreach_set("vector", np.array(points, np.float32).ravel())

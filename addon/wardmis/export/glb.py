@@ -41,6 +41,7 @@ Z_UP = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]], np.fl
 FLOAT, UINT32 = 5126, 5125
 TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
 ARRAY_BUFFER, INDEX_BUFFER = 34962, 34963
+POINTS, LINES = 0, 1
 WRAP = {"repeat": 10497, "clamp": 33071, "mirror": 33648, "clip": 33071}
 NEAREST, LINEAR = 9728, 9729
 CORE_IMAGES = {"image/png", "image/jpeg"}
@@ -274,18 +275,24 @@ class _Encoder:
         attributes |= {f"_{name}": self._accessor(values) for name, values in mesh.attributes.items()}
         for name, values in mesh.tangents.items():
             attributes[f"_TANGENT_{name}" if name else "TANGENT"] = self._accessor(values)
-        own: dict[str, Any] = {"uvSets": names} if any(names) else {}
+        extension: dict[str, Any] = {"uvSets": names} if any(names) else {}
         if mesh.motion_positions:
-            own["motion"] = {"positions": [self._accessor(p, "POSITION") for p in mesh.motion_positions]}
+            extension["motion"] = {"positions": [self._accessor(p, "POSITION") for p in mesh.motion_positions]}
             if mesh.motion_normals:
-                own["motion"]["normals"] = [self._accessor(n) for n in mesh.motion_normals]
-        sets = {"extensions": {EXTENSION: own}} if own else {}
+                extension["motion"]["normals"] = [self._accessor(n) for n in mesh.motion_normals]
+        more: dict[str, Any] = {}
+        if mesh.radii is not None:
+            attributes["_RADIUS"] = self._accessor(mesh.radii)
+            more["mode"] = POINTS if mesh.shape == "spheres" else LINES
+            extension |= {"shape": mesh.shape} | ({"pieces": mesh.pieces} if mesh.shape == "ribbons" else {})
+        if extension:
+            more["extensions"] = {EXTENSION: extension}
         primitives = [
             {
                 "attributes": attributes,
                 "indices": self._accessor(p.triangles, "INDICES"),
                 "material": p.material,
-                **sets,
+                **more,
             }
             for p in mesh.primitives
         ]

@@ -21,7 +21,10 @@ from .tangent import shared_tangents
 
 @dataclass
 class Geometry:
-    """The vertex arrays of a mesh, and the material slot of each triangle (None: slot 0 for all)."""
+    """The vertex arrays of a mesh, and the material slot of each triangle (None: slot 0 for all).
+
+    Of curves and point clouds, which have radii, `triangles` are those of MeshData.
+    """
 
     positions: np.ndarray
     normals: np.ndarray | None
@@ -32,6 +35,9 @@ class Geometry:
     attributes: dict[str, np.ndarray] = field(default_factory=dict)
     tangents: dict[str, np.ndarray] = field(default_factory=dict)
     generated: tuple[float, ...] | None = None
+    radii: np.ndarray | None = None
+    shape: str = ""
+    pieces: int = 5
 
 
 @dataclass(frozen=True)
@@ -144,10 +150,17 @@ def assemble(name: str, geometry: Geometry, materials: tuple[int, ...]) -> MeshD
         geometry.attributes,
         geometry.tangents,
         generated=geometry.generated,
+        radii=geometry.radii,
+        shape=geometry.shape,
+        pieces=geometry.pieces,
     )
 
 
 def transformed(mesh: MeshData, linear: np.ndarray) -> MeshData:
-    """The mesh in the shape that a 3x3 matrix without an inverse gives it: a flat one, with the normals of its faces."""
+    """The mesh in the shape that a 3x3 matrix gives it, with the normals of its faces; of spheres the places, and their sizes alike."""
     positions = (mesh.positions.astype(np.float64) @ linear.T).astype(np.float32)
-    return replace(mesh, positions=positions, normals=None, tangents={})
+    if mesh.radii is None:
+        return replace(mesh, positions=positions, normals=None, tangents={})
+    return replace(
+        mesh, positions=positions, radii=(mesh.radii * np.cbrt(abs(np.linalg.det(linear)))).astype(np.float32)
+    )

@@ -157,15 +157,15 @@ class MaterialData:
 
 @dataclass
 class PrimitiveData:
-    """The triangles of a mesh that have one material."""
+    """What of a mesh has one material."""
 
     material: int  # index into SceneData.materials
-    triangles: np.ndarray  # (n, 3) uint32 into the mesh's vertex arrays
+    triangles: np.ndarray  # (n, 3) uint32 into the vertex arrays; of curves (n, 2): segments; of spheres (n,)
 
 
 @dataclass
 class MeshData:
-    """Vertex arrays shared by primitives. Without normals the triangles are flat."""
+    """Vertex arrays shared by primitives. Without normals the triangles are flat; with radii it has curves or spheres."""
 
     name: str
     positions: np.ndarray  # (n, 3) float32
@@ -178,6 +178,9 @@ class MeshData:
     motion_positions: list[np.ndarray] = field(default_factory=list)  # at equal steps of the shutter's time
     motion_normals: list[np.ndarray] = field(default_factory=list)
     generated: tuple[float, ...] | None = None  # 12 numbers, from object space to Generated coordinates
+    radii: np.ndarray | None = None  # (n,) float32
+    shape: str = ""  # of what has radii: "ribbons", "tubes", "cones", "spheres"
+    pieces: int = 5  # flat ones of a ribbon's segment
 
 
 @dataclass

@@ -128,14 +128,14 @@ class Motion:
         self._set_frame = set_frame
         self._scene = scene
         self._context = context
-        self._placed: dict[Key, _Placed] = {}
+        self._placed: dict[Key, list[_Placed]] = {}  # an object, and its hair
         self._shapes: dict[int, _Shape] = {}  # by mesh
         self._shape_of: dict[Key, int] = {}
 
     def add(self, instance: Any, data: InstanceData) -> None:
         steps = steps_of(instance.object, instance.parent if instance.is_instance else None)
         if steps:
-            self._placed[_key(instance)] = _Placed(data, data.mesh, steps)
+            self._placed.setdefault(_key(instance), []).append(_Placed(data, data.mesh, steps))
 
     def add_shape(self, instance: Any, mesh: int, data: MeshData, geometry: Geometry, wanted: Wanted) -> None:
         """The first time that a mesh is exported."""
@@ -149,7 +149,10 @@ class Motion:
         """Through the opening, and notes in `scene` what has moved."""
         camera_steps = steps_of(camera, None)
         cameras: dict[float, CameraData] = {0.0: scene.camera}
-        wanted = {p.steps for p in self._placed.values()} | {camera_steps, *(s.steps for s in self._shapes.values())}
+        wanted = {p.steps for all_of in self._placed.values() for p in all_of} | {
+            camera_steps,
+            *(s.steps for s in self._shapes.values()),
+        }
         for time in sorted({t for steps in wanted if steps for t in times(steps)} - {0.0}):
             self._context.check_cancelled()
             go_to(self._set_frame, self.opening.frame(time))
@@ -164,13 +167,13 @@ class Motion:
     def _look(self, depsgraph: Any, time: float) -> None:
         for instance in depsgraph.object_instances:
             self._context.check_cancelled()
-            if instance.object.type != "MESH":
+            if instance.object.type not in {"MESH", "CURVES", "POINTCLOUD"}:
                 continue
             key = _key(instance)
-            placed = self._placed.get(key)
-            if placed is not None and time in times(placed.steps):
-                placed.matrices[time] = np.array(instance.matrix_world)
-            if key in self._shape_of:
+            for placed in self._placed.get(key, ()):
+                if time in times(placed.steps):
+                    placed.matrices[time] = np.array(instance.matrix_world)
+            if instance.object.type == "MESH" and key in self._shape_of:
                 shape = self._shapes[self._shape_of[key]]
                 if time in times(shape.steps):
                     self._context.owner = shape.owner
@@ -178,7 +181,7 @@ class Motion:
                         shape.at[time] = gather_geometry(mesh, shape.wanted, self._context)
 
     def _finish(self, scene: SceneData) -> None:
-        for placed in self._placed.values():
+        for placed in (p for all_of in self._placed.values() for p in all_of):
             data = placed.data
             steps = _filled(placed.matrices, data.matrix, placed.steps)
             if all(np.array_equal(matrix, data.matrix) for matrix in steps):

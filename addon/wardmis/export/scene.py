@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
@@ -13,12 +14,14 @@ from .. import compat
 from .attribute import OF_OBJECT, object_attributes
 from .camera import export_camera, export_film
 from .context import ExportContext, ExportError
+from .hashing import random_of
 from .image import export_image
 from .light import export_light
 from .material import export_material
 from .mesh import Geometry, Wanted, assemble, gather_geometry, transformed, wanted_of
 from .model import VISIBILITY, ClosureData, ColorInput, InstanceData, MaterialData, ScalarInput, SceneData
 from .motion import Motion, Opening, SetFrame, at_its_own_frame_again, go_to, opening_of, shutter_of
+from .strands import curve_settings, gather_curves, gather_hair, gather_points, particle_hair
 from .world import export_worlds
 
 NO_MATERIAL = MaterialData("(no material)", diffuse=ColorInput((0.8, 0.8, 0.8)))  # as Cycles shows it
@@ -39,33 +42,6 @@ SMALLEST_DETERMINANT = 1e-37
 # its parents, is that inexact
 SMALLEST_STRETCH = 1e-6
 INVISIBLE = {"EMPTY", "CAMERA", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE"}
-
-
-def random_of(instance: int | None, name: str) -> float:
-    """Object Info's Random: of an instance's number, else of a hash of the object's name, as Cycles makes it."""
-    if instance is None:
-        number = 0
-        for byte in name.encode():
-            number = (number * 37 + byte) & 0xFFFFFFFF
-        instance = _hash(number, 0)
-    return (instance & 0xFFFFFFFF) / 0xFFFFFFFF
-
-
-def _hash(x: int, y: int) -> int:
-    """Jenkins' of two words."""
-    a = b = c = (0xDEADBEEF + (2 << 2) + 13) & 0xFFFFFFFF
-    a, b = (a + x) & 0xFFFFFFFF, (b + y) & 0xFFFFFFFF
-
-    def turned(v: int, bits: int) -> int:
-        return ((v << bits) | (v >> (32 - bits))) & 0xFFFFFFFF
-
-    c = ((c ^ b) - turned(b, 14)) & 0xFFFFFFFF
-    a = ((a ^ c) - turned(c, 11)) & 0xFFFFFFFF
-    b = ((b ^ a) - turned(a, 25)) & 0xFFFFFFFF
-    c = ((c ^ b) - turned(b, 16)) & 0xFFFFFFFF
-    a = ((a ^ c) - turned(c, 4)) & 0xFFFFFFFF
-    b = ((b ^ a) - turned(a, 14)) & 0xFFFFFFFF
-    return ((c ^ b) - turned(b, 24)) & 0xFFFFFFFF
 
 
 def gather_scene(
@@ -170,10 +146,10 @@ class _Gatherer:
         self.instances: list[InstanceData] = []
         self.lights: list[Any] = []
         self._material_index: dict[str | None, int] = {}
-        self._mesh_index: dict[tuple[int, tuple[int, ...]], int | None] = {}
-        self._geometry: dict[tuple[int, Wanted], Geometry | None] = {}
+        self._mesh_index: dict[tuple[int, str, tuple[int, ...]], int | None] = {}
+        self._geometry: dict[tuple[int, str, Wanted], Geometry | None] = {}
         self._hidden: dict[int, frozenset[str]] = {}
-        self._noted_hair: set[str] = set()
+        self._curves = curve_settings(depsgraph.scene_eval)
 
     def gather_objects(self, depsgraph: Any) -> None:
         for instance in depsgraph.object_instances:
@@ -184,13 +160,18 @@ class _Gatherer:
                 continue
             self.context.owner = obj.name
             if instance.show_particles and self.view_layer.use_strand:
-                self._note_hair(obj)
+                self._hair(obj, instance)
             if not instance.show_self:
                 continue
             self._note_light_linking(obj.original)
             if kind == "MESH":
                 if self.view_layer.use_solid:
-                    self._mesh(obj, instance)
+                    self._place(obj, instance, "mesh", obj.data, self._mesh_geometry)
+            elif kind == "CURVES":
+                if self.view_layer.use_strand:
+                    self._place(obj, instance, "curves", obj.data, self._curves_geometry)
+            elif kind == "POINTCLOUD":
+                self._place(obj, instance, "points", obj.data, self._points_geometry)
             elif kind == "LIGHT":
                 matrix = self._matrix(instance)
                 light = export_light(obj.data, obj.name, matrix, self._hidden_from(obj, instance), self.context)
@@ -199,6 +180,8 @@ class _Gatherer:
             elif kind not in SEEN_AS_MESHES | DRAWN_BY_BLENDER:
                 self.context.note(f"object '{obj.name}': {kind.lower()} objects are not supported; it is left out")
         self._bake_flattened()
+        if compat.SPHERES_STAY_ROUND and self.motion is None:
+            self._keep_spheres_round()
 
     def _bake_flattened(self) -> None:
         """Gives what a transform without an inverse makes flat a mesh of its own, in the shape that it has in the world.
@@ -213,6 +196,8 @@ class _Gatherer:
         kept = []
         for instance, linear, is_flat in zip(self.instances, axes, flat):
             if is_flat:
+                if self.meshes[instance.mesh].radii is not None:
+                    continue  # it has no thickness left
                 stretch = np.linalg.svd(linear, compute_uv=False)
                 if not stretch[1] > SMALLEST_STRETCH * stretch[0]:
                     continue  # a line or a point has nothing to show
@@ -225,6 +210,17 @@ class _Gatherer:
             kept.append(instance)
         self.instances = kept
 
+    def _keep_spheres_round(self) -> None:
+        """Puts point clouds that are placed once, and unevenly scaled, into the world as they are in Cycles."""
+        uses = Counter(instance.mesh for instance in self.instances)
+        for instance in self.instances:
+            mesh, linear = self.meshes[instance.mesh], instance.matrix[:3, :3]
+            if mesh.shape == "spheres" and uses[instance.mesh] == 1:
+                product = linear.T @ linear
+                if np.abs(product - np.eye(3) * product[0, 0]).max() > SMALLEST_STRETCH * np.abs(product).max():
+                    self.meshes[instance.mesh] = transformed(mesh, linear)
+                    instance.matrix[:3, :3] = np.eye(3)
+
     def _matrix(self, instance: Any) -> np.ndarray:
         matrix = np.array(instance.matrix_world)  # a copy: the instance lives for one step of the iteration
         if not np.isfinite(matrix).all():
@@ -234,13 +230,25 @@ class _Gatherer:
             )
         return matrix
 
-    def _mesh(self, obj: Any, instance: Any) -> None:
-        mesh = obj.data
-        materials = self._slots(obj, mesh)
+    def _hair(self, obj: Any, instance: Any) -> None:
+        """Strands of particles: of the object itself, or of its instances by collections and particles."""
+        owner = instance.instance_object if instance.is_instance else obj
+        if obj.type != "MESH" or compat.owner_of_mesh(instance) is None or not particle_hair(owner):
+            return
+        if owner.original.mode in {"EDIT", "PARTICLE_EDIT"}:
+            self.context.note(f"object '{owner.name}': its hair is not rendered while it is edited, as in Cycles")
+            return
+        if self.motion is not None and owner.original.is_deform_modified(self.scene, "RENDER"):
+            self.context.note(f"object '{owner.name}': its hair is blurred as the object moves, not as it bends")
+        self._place(obj, instance, "hair", owner, self._hair_geometry)
+
+    def _place(self, obj: Any, instance: Any, kind: str, source: Any, gather: Callable[..., Geometry | None]) -> None:
+        """An instance of what `gather(instance, source, wanted)` makes of an evaluated datablock, once for all that share it."""
+        materials = self._slots(obj, obj.data)
         # the evaluated mesh is the same one for objects that share a mesh and do not modify it
-        key = (mesh.as_pointer(), materials)
+        key = (source.as_pointer(), kind, materials)
         if key not in self._mesh_index:
-            self._mesh_index[key] = self._add_mesh(instance, materials)
+            self._mesh_index[key] = self._add_mesh(instance, kind, source, materials, gather)
         index = self._mesh_index[key]
         if index is not None:
             self._note_compositing(obj.original)
@@ -271,27 +279,40 @@ class _Gatherer:
                 named = object_attributes(program.attributes, owners)
                 data.attributes = tuple(sorted({*data.attributes, *named}))
 
-    def _add_mesh(self, instance: Any, materials: tuple[int, ...]) -> int | None:
-        mesh = instance.object.data
+    def _add_mesh(
+        self, instance: Any, kind: str, source: Any, materials: tuple[int, ...], gather: Callable[..., Geometry | None]
+    ) -> int | None:
+        wanted = wanted_of(self.materials[m] for m in materials)
+        if self.view_layer.use_pass_uv:
+            wanted = replace(wanted, uv_sets=wanted.uv_sets | {""})
+        key = (source.as_pointer(), kind, wanted)
+        if key not in self._geometry:
+            self._geometry[key] = gather(instance, source, wanted)
+        geometry = self._geometry[key]
+        if geometry is None:
+            return None
+        self.meshes.append(assemble(source.name, geometry, materials))
+        if self.motion is not None and kind == "mesh":
+            self.motion.add_shape(instance, len(self.meshes) - 1, self.meshes[-1], geometry, wanted)
+        return len(self.meshes) - 1
+
+    def _mesh_geometry(self, instance: Any, _mesh: Any, wanted: Wanted) -> Geometry | None:
         if _is_gas_domain(compat.owner_of_mesh(instance)):
             self.context.note(
                 f"object '{self.context.owner}': smoke and fire are not supported; their domain is left out"
             )
             return None
-        wanted = wanted_of(self.materials[m] for m in materials)
-        if self.view_layer.use_pass_uv:
-            wanted = replace(wanted, uv_sets=wanted.uv_sets | {""})
-        key = (mesh.as_pointer(), wanted)
-        if key not in self._geometry:
-            with compat.whole_mesh(instance) as whole:
-                self._geometry[key] = gather_geometry(whole, wanted, self.context)
-        geometry = self._geometry[key]
-        if geometry is None:
-            return None
-        self.meshes.append(assemble(mesh.name, geometry, materials))
-        if self.motion is not None:
-            self.motion.add_shape(instance, len(self.meshes) - 1, self.meshes[-1], geometry, wanted)
-        return len(self.meshes) - 1
+        with compat.whole_mesh(instance) as whole:
+            return gather_geometry(whole, wanted, self.context)
+
+    def _hair_geometry(self, _instance: Any, owner: Any, wanted: Wanted) -> Geometry | None:
+        return gather_hair(owner, wanted, self._curves, self.context)
+
+    def _curves_geometry(self, _instance: Any, curves: Any, wanted: Wanted) -> Geometry | None:
+        return gather_curves(curves, wanted, self._curves, self.context)
+
+    def _points_geometry(self, _instance: Any, cloud: Any, wanted: Wanted) -> Geometry | None:
+        return gather_points(cloud, wanted, self.context)
 
     def _slots(self, obj: Any, mesh: Any) -> tuple[int, ...]:
         """The exported material of each slot, at least one."""
@@ -337,10 +358,3 @@ class _Gatherer:
             self.context.note(
                 f"object '{original.name}': light linking is not supported; its light reaches all objects"
             )
-
-    def _note_hair(self, obj: Any) -> None:
-        for system in obj.particle_systems:
-            if system.settings.type == "HAIR" and system.settings.render_type == "PATH":
-                self.context.note(
-                    f"object '{obj.name}': the hair strands of '{system.name}' are not supported; they are left out"
-                )

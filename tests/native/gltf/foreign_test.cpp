@@ -389,7 +389,7 @@ TEST(Foreign, ASceneWithNothingInItHasAViewOfThat) {
   Scene s = read(b);
   addDefaults(s);
   EXPECT_TRUE(s.camera);
-  EXPECT_TRUE(listHas(s.notes, "the scene has no triangles"));
+  EXPECT_TRUE(listHas(s.notes, "the scene has nothing to render"));
 }
 
 TEST(Foreign, ACameraThatMustBeThereIsMissedAtOnce) {

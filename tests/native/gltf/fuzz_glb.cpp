@@ -12,6 +12,7 @@
 #include "math/error.h"
 #include "program/run.h"
 #include "scene/defaults.h"
+#include "world/strands.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {  // NOLINT(readability-identifier-naming)
   using namespace wardmis;
@@ -29,6 +30,13 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {  // NO
   try {
     Scene scene = readGlb(file, {}, "fuzz.glb");
     addDefaults(scene);
+    for (const Mesh& mesh : scene.meshes)
+      for (const MeshPart& part : mesh.parts)
+        for (const Primitive& p : part.primitives)
+          if (p.form != Form::kTriangles) {
+            Vec3f lower, upper;
+            Strands(part, p, nullptr).growBox(lower, upper);
+          }
     // what is read must run, wherever it is
     for (const Material& m : scene.materials) {
       if (!m.program) continue;

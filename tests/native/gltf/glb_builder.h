@@ -134,6 +134,27 @@ int rawTexture(GlbBuilder& b, int width, int height, int channels, const std::ve
   return b.add("textures", {{"source", image}});
 }
 
+// Two curves as ribbons, tubes and cones, and their points as spheres.
+inline GlbBuilder withStrands() {
+  GlbBuilder b;
+  const int positions = b.accessor<float>({0, 0, 0, 0, 0, 1, 0, 0, 2, 1, 0, 0, 1, 1, 0}, 3);
+  const int radii = b.accessor<float>({0.1f, 0.2f, 0, 0.1f, 0.3f}, 1);
+  const int segments = b.accessor<uint8_t>({0, 1, 1, 2, 3, 4}, 1);
+  json primitives = json::array();
+  for (const char* shape : {"ribbons", "tubes", "cones", "spheres"}) {
+    json p = {{"attributes", {{"POSITION", positions}, {"_RADIUS", radii}}},
+              {"extensions", {{"WARDMIS_scene", {{"shape", shape}}}}}};
+    const bool lines = std::string(shape) != "spheres";
+    p["mode"] = lines ? 1 : 0;
+    if (lines) p["indices"] = segments;
+    primitives.push_back(p);
+  }
+  primitives[0]["extensions"]["WARDMIS_scene"]["pieces"] = 3;
+  b.add("meshes", {{"name", "Hair"}, {"primitives", primitives}});
+  b.add("nodes", {{"name", "Fur"}, {"mesh", 0}});
+  return b;
+}
+
 // A scene that uses nearly everything that the format has.
 inline GlbBuilder everything() {
   GlbBuilder b = textured(ward(
