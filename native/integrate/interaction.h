@@ -54,6 +54,15 @@ inline Vec2f interpolate(const Array<Vec2f>& a, const uint32_t* i, float u, floa
   return {a[i[0]].x * w + a[i[1]].x * u + a[i[2]].x * v, a[i[0]].y * w + a[i[1]].y * u + a[i[2]].y * v};
 }
 
+// UVs are in the file only where they are looked up (the reader leaves the others out).
+inline Vec2f uvAt(const Shape& s, const Hit& hit) {
+  if (s.part->uvs.empty()) return {};
+  if (s.strands == nullptr) return interpolate(s.part->uvs, s.indices + 3 * size_t{hit.triangle}, hit.u, hit.v);
+  uint32_t ends[3];
+  endsOf(*s.primitive, hit.triangle, ends);
+  return interpolate(s.part->uvs, ends, hit.u, 0);
+}
+
 // World direction of the anisotropy before its rotation: of increasing u; without UVs, along the meridians of the
 // object's z axis.
 inline Vec3f tangent(const Placement& p, const Shape& s, const uint32_t* i, const Corners& corner, Vec3f position) {
@@ -164,12 +173,10 @@ InteractionOf<SurfaceOf<N, K>> interactWith(const Scene& scene, const LobeNumber
   x.rayLength = hit.t;
   if (shape.strands != nullptr) [[unlikely]] {
     const StrandPoint on = strandPoint(placement, shape, ray, hit);
-    uint32_t i[3];
-    endsOf(*shape.primitive, hit.triangle, i);
     x.position = on.position;
     x.geometric = on.normal;
     x.strand = {hit.placement, hit.shape, shape.strands->strandOf(hit.triangle)};
-    const Vec2f uv = shape.part->uvs.empty() ? Vec2f{} : interpolate(shape.part->uvs, i, hit.u, 0);
+    const Vec2f uv = uvAt(shape, hit);
     const ShadedPoint point{placement, shape,     hit.triangle, hit.u,     hit.v,  x.position,
                             on.facing, on.normal, x.wo,         on.turned, x.path, hit.t};
     resolveSurface<N, K>(
@@ -200,8 +207,7 @@ InteractionOf<SurfaceOf<N, K>> interactWith(const Scene& scene, const LobeNumber
   x.clearance = clearance(placement, corner, ng);
   if (!shape.part->normals.empty()) ns = bent(ns, ng, x.wo);
 
-  // UVs are in the file only where a texture is looked up (the reader leaves the others out).
-  const Vec2f uv = shape.part->uvs.empty() ? Vec2f{} : interpolate(shape.part->uvs, i, hit.u, hit.v);
+  const Vec2f uv = uvAt(shape, hit);
   const ShadedPoint point{placement, shape, hit.triangle, hit.u,  hit.v,  x.position,
                           ng,        ns,    x.wo,         turned, x.path, hit.t};
   resolveSurface<N, K>(

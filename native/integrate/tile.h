@@ -15,9 +15,7 @@ template <class X>
 [[gnu::noinline]] void note(DataPixel& data, const RenderScene& world, const Hit& hit, const X& x, bool first) {
   const Placement& placement = world.geometry.placements[hit.placement];
   const Shape& shape = world.geometry.shapes[hit.shape];
-  Vec2f uv{0, 0};
-  if (!shape.part->uvs.empty())
-    uv = detail::interpolate(shape.part->uvs, shape.indices + 3 * size_t{hit.triangle}, hit.u, hit.v);
+  const Vec2f uv = detail::uvAt(shape, hit);
   data.uv += Vec3f{uv.x, uv.y, 1};
   if (!first) return;
   data.position = x.position;
