@@ -16,7 +16,7 @@ bpy.context.view_layer.use_pass_mist = True
 material = bpy.data.materials.new("Glass")
 material.use_nodes = True
 tree = material.node_tree
-tree.links.new(tree.nodes.new("ShaderNodeBsdfGlass").outputs[0], tree.get_output_node("ALL").inputs["Surface"])
+tree.links.new(tree.nodes.new("ShaderNodeBsdfToon").outputs[0], tree.get_output_node("ALL").inputs["Surface"])
 bpy.data.objects["Cube"].data.materials[0] = material
 """
 
@@ -105,7 +105,7 @@ class Shown(SceneTest):
         material = bpy.data.materials.new("Glass")
         material.use_nodes = True
         tree = material.node_tree
-        glass = tree.nodes.new("ShaderNodeBsdfGlass")
+        glass = tree.nodes.new("ShaderNodeBsdfToon")
         tree.links.new(glass.outputs[0], tree.get_output_node("ALL").inputs["Surface"])
         for obj in objects:
             obj.data.materials.append(bpy.data.materials.new("Plain"))
