@@ -14,15 +14,18 @@
 namespace wardmis {
 namespace {
 
-// The operations that each material's program has, and how often, of those whose program has any.
+// The operations that each program of materials, lights and skies has, and how often.
 std::vector<std::pair<std::string, std::map<std::string, int>>> programsOf(const Scene& scene) {
   std::vector<std::pair<std::string, std::map<std::string, int>>> out;
-  for (const Material& m : scene.materials) {
-    if (!m.program) continue;
+  const auto add = [&](const std::string& user, const std::shared_ptr<const Program>& program) {
+    if (!program) return;
     auto& [name, operations] = out.emplace_back();
-    name = m.name.empty() ? "(without a name)" : m.name;
-    for (const Instruction& i : m.program->instructions) ++operations[std::string(info(i.operation).name)];
-  }
+    name = user.empty() ? "(without a name)" : user;
+    for (const Instruction& i : program->instructions) ++operations[std::string(info(i.operation).name)];
+  };
+  for (const Material& m : scene.materials) add(m.name, m.program);
+  for (const Light& light : scene.lights) add(light.name, light.program);
+  for (const World& w : scene.worlds) add("(the world)", w.program);
   return out;
 }
 
@@ -93,7 +96,10 @@ Verb addInfo(CLI::App& app) {
     fmt::print("  materials   {}, textures {}\n", scene.materials.size(), scene.images.size());
     std::string skies;
     for (const Environment& e : environments)
-      if (e.exists()) skies += (skies.empty() ? "" : ", ") + std::string(e.world().texture >= 0 ? "image" : "constant");
+      if (e.exists())
+        skies += (skies.empty() ? "" : ", ") + std::string(e.world().program        ? "program"
+                                                           : e.world().texture >= 0 ? "image"
+                                                                                    : "constant");
     fmt::print("  lights      {}, emissive triangles {}, environment {}\n", scene.lights.size(),
                emitters.emissiveTriangles(), skies.empty() ? "none" : skies);
     fmt::print("  needs       {}\n", describe(n));

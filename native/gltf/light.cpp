@@ -17,7 +17,7 @@ std::optional<Light> emitting(const Json& json, const Light& light) {
 
 }  // namespace
 
-std::optional<Light> readLight(const Json& json, const Affine& toWorld) {
+std::optional<Light> readLight(const Json& json, const Affine& toWorld, Materials& materials) {
   constexpr std::pair<std::string_view, LightType> kTypes[] = {
       {"area", LightType::kArea}, {"point", LightType::kPoint}, {"spot", LightType::kSpot}, {"sun", LightType::kSun}};
   constexpr std::pair<std::string_view, bool> kIsEllipse[] = {{"rectangle", false}, {"ellipse", true}};
@@ -61,6 +61,7 @@ std::optional<Light> readLight(const Json& json, const Affine& toWorld) {
       light.flat = json.booleanOr("flat", false);
       break;
   }
+  light.program = materials.program(json, "light " + json.described(), light.result);
   return emitting(json, light);
 }
 

@@ -5,12 +5,13 @@
 #include <optional>
 
 #include "gltf/json.h"
+#include "gltf/material.h"
 #include "scene/scene.h"
 
 namespace wardmis {
 
 // An entry of the extension's `lights`; nullopt if it emits nothing.
-std::optional<Light> readLight(const Json& json, const Affine& toWorld);
+std::optional<Light> readLight(const Json& json, const Affine& toWorld, Materials& materials);
 // An entry of KHR_lights_punctual's `lights`.
 std::optional<Light> readPunctualLight(const Json& json, const Affine& toWorld);
 

@@ -93,6 +93,19 @@ int Materials::worldTexture(const Json& index) {
   return texture(index, true);
 }
 
+std::shared_ptr<const Program> Materials::program(const Json& owner, const std::string& user, int& result) {
+  const auto json = owner.find("program");
+  if (!json) {
+    if (const auto value = owner.find("result"))
+      value->fail("refers to a value, but there is no program beside it", "export the scene again");
+    return nullptr;
+  }
+  user_ = user;
+  ProgramReader reader(*json, textures_.size());
+  result = reader.use(owner.at("result"), ValueKind::kVector);
+  return reader.finish([&](const Json& index) { return texture(index, true); });
+}
+
 Material Materials::ward(const Json& extension) {
   Material m;
   program_.reset();
@@ -544,16 +557,18 @@ void Materials::finish(Scene& scene) {
     }
     texture = t->second;
   };
-  for (Material& m : read_.materials) {
-    if (m.program && !m.program->textures.empty()) {
-      auto program = std::make_shared<Program>(*m.program);
-      for (uint32_t& t : program->textures) {
-        int texture = static_cast<int>(t);
-        keep(texture);
-        t = static_cast<uint32_t>(texture);
-      }
-      m.program = std::move(program);
+  const auto keepOfProgram = [&](std::shared_ptr<const Program>& use) {
+    if (!use || use->textures.empty()) return;
+    auto program = std::make_shared<Program>(*use);
+    for (uint32_t& t : program->textures) {
+      int texture = static_cast<int>(t);
+      keep(texture);
+      t = static_cast<uint32_t>(texture);
     }
+    use = std::move(program);
+  };
+  for (Material& m : read_.materials) {
+    keepOfProgram(m.program);
     Material::forEachInput(m, [&](auto& input) {
       keep(input.texture.texture);
       if (input.texture.texture < 0 || std::is_same_v<decltype(input), ColorInput&>) return;
@@ -566,7 +581,11 @@ void Materials::finish(Scene& scene) {
         channel = channel == 3 ? channels - 1 : channels < 3 ? 0 : channel;
     });
   }
-  for (World& w : scene.worlds) keep(w.texture);
+  for (World& w : scene.worlds) {
+    keep(w.texture);
+    keepOfProgram(w.program);
+  }
+  for (Light& light : scene.lights) keepOfProgram(light.program);
   scene.materials = std::move(read_.materials);
 
   for (size_t i = 0; i < materials_.size(); i++)

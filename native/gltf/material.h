@@ -26,6 +26,9 @@ class Materials {
   const Program* program(int material) const { return read_.materials[material].program.get(); }
   // A world's texture; finish() makes of it the index in Scene::textures.
   int worldTexture(const Json& index);
+  // The program of the world or of a light, if it has one, and which of its values, a vector, is its `result`. `user`:
+  // for messages. finish() is to be told of it by the scene.
+  std::shared_ptr<const Program> program(const Json& owner, const std::string& user, int& result);
 
   // Decodes the images and moves everything into the scene.
   void finish(Scene& scene);

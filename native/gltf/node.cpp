@@ -229,8 +229,8 @@ uint8_t readVisibility(const Json& json) {
   return bits;
 }
 
-void readNodes(const Json& root, Accessors& accessors, Buffers& buffers, Meshes& meshes, LeftOut& leftOut,
-               bool needsCamera, Scene& scene) {
+void readNodes(const Json& root, Accessors& accessors, Buffers& buffers, Materials& materials, Meshes& meshes,
+               LeftOut& leftOut, bool needsCamera, Scene& scene) {
   const JsonArray nodes = root.array("nodes");
   NodeForest forest(root, nodes, leftOut);
   const auto own = root.extension(kExtension);
@@ -301,7 +301,7 @@ void readNodes(const Json& root, Accessors& accessors, Buffers& buffers, Meshes&
     const auto core = node.extension("KHR_lights_punctual");
     if (ownLight || core) {
       std::optional<Light> light =
-          ownLight ? readLight(lights[ownLight->index(lights.size(), "lights")], forest.world(i))
+          ownLight ? readLight(lights[ownLight->index(lights.size(), "lights")], forest.world(i), materials)
                    : readPunctualLight(punctualLights[core->at("light").index(punctualLights.size(), "lights")],
                                        forest.world(i));
       if (light) {

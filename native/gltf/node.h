@@ -16,7 +16,7 @@ uint8_t readVisibility(const Json& json);
 
 // Fills the scene's instances, lights and camera. The film must have been read. needsCamera: throws if there is none,
 // before meshes are read.
-void readNodes(const Json& root, Accessors& accessors, Buffers& buffers, Meshes& meshes, LeftOut& leftOut,
-               bool needsCamera, Scene& scene);
+void readNodes(const Json& root, Accessors& accessors, Buffers& buffers, Materials& materials, Meshes& meshes,
+               LeftOut& leftOut, bool needsCamera, Scene& scene);
 
 }  // namespace wardmis

@@ -14,6 +14,7 @@
 #include "gltf/material.h"
 #include "gltf/mesh.h"
 #include "gltf/node.h"
+#include "math/number.h"
 
 namespace wardmis {
 namespace {
@@ -116,9 +117,18 @@ World readWorld(const Json& json, Materials& materials) {
                                                            {"mirror-ball", SkyMap::kMirrorBall}};
   World world;
   const auto texture = json.find("texture");
-  world.radiance = json.lightOr("radiance", texture ? Rgb{1, 1, 1} : Rgb{0, 0, 0});
+  world.radiance = json.lightOr("radiance", texture || json.find("program") ? Rgb{1, 1, 1} : Rgb{0, 0, 0});
   world.visibility = readVisibility(json);
   world.maxBounces = static_cast<int>(json.integerOr("maxBounces", world.maxBounces, 0, 1 << 20));
+  if (json.find("program") && texture)
+    texture->fail("stands beside a program, in whose place it is", "export the scene again");
+  world.program = materials.program(json, "the world", world.result);
+  if (const auto cone = json.find("cone")) {
+    const Vec3f axis = cone->at("axis").vec3();
+    if (!(length(axis) > 1e-10f && length(axis) < 1e10f)) cone->at("axis").failExpected("a direction");
+    world.coneAxis = normalize(axis);
+    world.coneAngle = cone->at("angle").number(1e-5f, 2 * kPi<float>);
+  }
   if (texture && !isBlack(world.radiance)) {
     world.texture = materials.worldTexture(texture->at("index"));
     if (const auto map = texture->find("projection")) world.map = map->choice(kMaps);
@@ -168,7 +178,7 @@ Scene read(const Bytes& file, const std::filesystem::path& folder, const std::st
     for (size_t i = 0; i < notes.size(); i++) scene.notes.emplace_back(notes[i].string());
   }
 
-  readNodes(root, accessors, buffers, meshes, leftOut, needsCamera, scene);
+  readNodes(root, accessors, buffers, materials, meshes, leftOut, needsCamera, scene);
   if (root.array("animations").size() > 0) leftOut.add("animations", "one frame is rendered");
   meshes.finish(scene);
   materials.finish(scene);

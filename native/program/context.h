@@ -84,12 +84,13 @@ struct ShadingContext {
   // kReadsGenerated: in object space where the mesh has no coordinates of its own
   Varying generated{};
   // kReadsObject
-  bool isObject = true;  // a surface of one; else a world
+  bool isObject = true;  // a surface of one, or a light; else a world, whose position is the direction looked at
   Affine toWorld;
   float color[4] = {1, 1, 1, 1};
   float index = 0, random = 0;
   // kReadsCamera; looks along +z, y is up
-  Affine camera;  // to world; unit axes
+  Vec3f rayOrigin{};  // of a world: where it is looked at from
+  Affine camera;      // to world; unit axes
   bool orthographic = false, panoramic = false;
   float window[4] = {-1, 1, -1, 1};  // left, right, bottom, top of the border, at distance 1 (or in metres)
   Varying panorama{};                // where a panoramic camera sees the point, in its window

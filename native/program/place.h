@@ -8,9 +8,14 @@
 namespace wardmis::place {
 
 inline Vec3f inCamera(const ShadingContext& c, Vec3f p) { return vectors::inversePoint(c.camera, p); }
+// Where a point is seen: of a world, in its direction from the camera.
+inline Vec3f asSeen(const ShadingContext& c, Vec3f p) { return inCamera(c, c.isObject ? p : p + c.camera.t); }
 
 inline Vec3f window(const ShadingContext& c, Vec3f p) {
-  const Vec3f q = inCamera(c, p);
+  const bool parallel = c.orthographic && !c.isObject;  // such rays differ by where they start
+  const Vec3f q = !parallel                          ? asSeen(c, p)
+                  : (c.path.kinds & kCameraRay) != 0 ? inCamera(c, c.rayOrigin)
+                                                     : inCamera(c, p);
   const float x = c.orthographic ? q.x : arithmetic::divide(q.x, q.z);
   const float y = c.orthographic ? q.y : arithmetic::divide(q.y, q.z);
   const float* w = c.window;
@@ -79,7 +84,7 @@ inline void read(Operation operation, const Operands& o, const ShadingContext& c
       return o.set(c.isObject ? vectors::inversePoint(c.toWorld, p) : p);
     }
     case kCamera:
-      return o.set(inCamera(c, shifted(c.position)));
+      return o.set(asSeen(c, shifted(c.position)));
     case kWindow:
       return o.set(c.panoramic ? shifted(c.panorama) : window(c, shifted(c.position)));
     case kParametric:

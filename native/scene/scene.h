@@ -159,6 +159,8 @@ struct Light {
   uint8_t visibility = kSeenByAll;
   bool shadow = true;
   int maxBounces = 1024;  // it lights surfaces that a path has reached by at most so many
+  std::shared_ptr<const Program> program;
+  int result = -1;  // index into Program::results: what `emitted` is multiplied by where the light is looked at
 };
 
 // How a camera takes directions to its plane: docs/scene-format.md. The panoramic ones come last.
@@ -214,8 +216,14 @@ enum class SkyMap : uint8_t { kEquirectangular, kMirrorBall };
 
 // Light from infinitely far. Several are as many skies, one over the other, as a rule for other kinds of ray each.
 struct World {
-  Rgb radiance{0, 0, 0};
+  Rgb radiance{0, 0, 0};  // times what the texture or the program has in a direction
   int texture = -1;
+  std::shared_ptr<const Program> program;
+  int result = -1;  // index into Program::results
+  // Light from within a cone alone, as of a sun's disc: towards its axis, in the scene's frame; angle 0: from
+  // everywhere.
+  Vec3f coneAxis{0, 0, 1};
+  float coneAngle = 0;  // full
   SkyMap map = SkyMap::kEquirectangular;
   float matrix[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major, Z-up direction -> the image's frame
   uint8_t visibility = kSeenByAll;

@@ -6,6 +6,7 @@
 
 #include "math/number.h"
 #include "math/warp.h"
+#include "program/vectors.h"
 #include "scene/inputs.h"
 #include "world/shading.h"
 
@@ -14,6 +15,8 @@ namespace {
 
 constexpr float kFar = 3e38f;
 constexpr float kPif = kPi<float>;
+
+float fraction(float v) { return v - std::floor(v); }
 
 // Luminances of emissive triangles, for their selection.
 class TriangleLuminance {
@@ -205,6 +208,10 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Env
         w = intensity * crossSection;
         break;
     }
+    if (light.program) {
+      l.light = &light;
+      w *= meanFactor(l, geometry.radius());
+    }
     const auto index = static_cast<uint32_t>(lamps_.size());
     l.exclusive = l.kind == Kind::kDeltaPoint || l.kind == Kind::kDeltaSun || !l.shadow;
     (l.exclusive ? exclusive_ : shared_) = true;
@@ -340,6 +347,60 @@ float Emitters::pdfRectangle(const Lamp& lamp, Vec3f from, float t, float cosLig
   return q.solidAngle > 1e-4f ? 1 / q.solidAngle : 0;
 }
 
+Rgb Emitters::factor(const Lamp& lamp, Vec3f from, Vec3f d, float t, int bounces) const {
+  LitPoint p{from + d * t, -d, -d, t, bounces};
+  switch (lamp.kind) {
+    case Kind::kRectangle:
+    case Kind::kEllipse:
+      p.normal = lamp.normal;
+      break;
+    case Kind::kSphere:
+      p.normal = safeNormalize(p.position - lamp.center);
+      break;
+    case Kind::kDeltaPoint:
+      p.position = lamp.center;
+      break;
+    case Kind::kDeltaSun:
+    case Kind::kSunCone:
+    case Kind::kSunDisk:
+      p.position = -d;
+      break;
+    default:
+      break;
+  }
+  return lightFactor(scene_, *lamp.light, p);
+}
+
+double Emitters::meanFactor(const Lamp& lamp, float distance) const {
+  constexpr int kPoints = 256;
+  // what shines between them must be aimed at, too
+  constexpr double kLeast = 0.02, kLeastOfMost = 0.02;
+  double sum = 0, all = 0, most = 0;
+  for (int i = 0; i < kPoints; ++i) {
+    const Vec2f u{(static_cast<float>(i) + 0.5f) / kPoints, fraction(0.618033989f * static_cast<float>(i))};
+    Vec3f d = toCone(u, 2.0f);  // of the light
+    Vec3f position = lamp.center;
+    if (lamp.kind == Kind::kDeltaSun || lamp.kind == Kind::kSunCone || lamp.kind == Kind::kSunDisk) {
+      d = -lamp.center;
+    } else if (lamp.area > 0) {
+      const float a = 2 * fraction(0.754877666f * static_cast<float>(i)) - 1;
+      const float b = 2 * fraction(0.569840291f * static_cast<float>(i)) - 1;
+      position += (lamp.halfX * a + lamp.halfY * b) * (lamp.kind == Kind::kEllipse ? 0.7f : 1.0f);
+    }
+    const bool plane = lamp.kind == Kind::kRectangle || lamp.kind == Kind::kEllipse;
+    const float cosLight = plane ? cosine(lamp, d) : 1;
+    if (!(cosLight > 0)) continue;
+    const double here = double(strength(profile(lamp, d)) * cosLight);
+    const double given = double(strength(factor(lamp, position + d * distance, -d, distance, 0)));
+    all += here;
+    if (!std::isfinite(given)) continue;
+    sum += here * given;
+    most = std::max(most, given);
+  }
+  const double mean = all > 0 ? sum / all : 0;
+  return std::max({mean, kLeastOfMost * most, mean > 0 ? 0 : kLeast});
+}
+
 LightSample Emitters::sample(Vec3f from, ChoicePoint point, int bounces, float time) const {
   LightSample s;
   const uint32_t index = table_.sample(point.x);
@@ -459,11 +520,12 @@ LightSample Emitters::sample(Vec3f from, ChoicePoint point, int bounces, float t
       const Environment& environment = environments_[lamp.environment];
       s.distance = kFar;
       s.direction = environment.sample(point);
-      s.radiance = environment.radiance(s.direction);
+      s.radiance = environment.radiance(s.direction, {from, false, bounces});
       s.pdf = environment.pdf(s.direction);
       break;
     }
   }
+  if (lamp.light != nullptr && s.pdf > 0) s.radiance *= factor(lamp, from, s.direction, s.distance, bounces);
   s.pdf *= choice;
   s.visibility = lamp.visibility;
   s.shadow = lamp.shadow;
@@ -471,19 +533,19 @@ LightSample Emitters::sample(Vec3f from, ChoicePoint point, int bounces, float t
   return s;
 }
 
-bool Emitters::meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax, EmitterHit& hit) const {
+bool Emitters::meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax, int bounces, EmitterHit& hit) const {
   const Vec3f d = ray.direction;
   // where two lobes share a technique, both get what any of its rays meets: who sees it is the estimator's to say
   const int seers = ray.kind == kSeenByCamera ? kSeenByCamera : kSeenBySurfaces;
   if ((lamp.visibility & seers) == 0) return false;
-  float pdf = 0;
+  float pdf = 0, t = kFar;
   switch (lamp.kind) {
     case Kind::kRectangle:
     case Kind::kEllipse: {
       const float cosLight = cosine(lamp, -d);
       if (!(cosLight > 0)) return false;  // one-sided
       const Vec3f toCenter = lamp.center - ray.origin;
-      const float t = dot(toCenter, lamp.normal) / dot(d, lamp.normal);
+      t = dot(toCenter, lamp.normal) / dot(d, lamp.normal);
       if (!(t > ray.tMin) || !(t < tMax)) return false;
       const Vec3f p = d * t - toCenter;
       // solve p = a halfX + b halfY in the plane (the axes need not be orthogonal)
@@ -500,7 +562,7 @@ bool Emitters::meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax,
       const Vec3f toCenter = lamp.center - ray.origin;
       const float d2 = dot(toCenter, toCenter), along = dot(d, toCenter);
       if (!(along > 0)) return false;
-      const float t = d2 / along;
+      t = d2 / along;
       if (!(t > ray.tMin) || !(t < tMax)) return false;
       const Vec3f p = d * t - toCenter;
       if (dot(p, p) > lamp.radius * lamp.radius) return false;
@@ -515,7 +577,7 @@ bool Emitters::meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax,
       const float q = r2 - dot(closest, closest);
       if (!(q >= 0)) return false;
       const float root = std::sqrt(q);
-      const float t = d2 > r2 ? along - root : along + root;
+      t = d2 > r2 ? along - root : along + root;
       if (!(t > ray.tMin) || !(t < tMax)) return false;
       if (d2 > r2) {
         const float sin2 = r2 / d2;
@@ -542,12 +604,13 @@ bool Emitters::meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax,
     }
     case Kind::kEnvironment:
       pdf = environments_[lamp.environment].pdf(d);
-      hit.radiance = environments_[lamp.environment].radiance(d);
+      hit.radiance = environments_[lamp.environment].radiance(d, {ray.origin, seers == kSeenByCamera, bounces});
       break;
     case Kind::kDeltaPoint:
     case Kind::kDeltaSun:
       return false;
   }
+  if (lamp.light != nullptr) hit.radiance *= factor(lamp, ray.origin, d, t, bounces);
   hit.pdf = pdf > 0 ? pdf * probability(index) : 0;
   hit.visibility = lamp.visibility;
   hit.sky = lamp.kind == Kind::kEnvironment;

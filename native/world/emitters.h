@@ -90,7 +90,8 @@ class Emitters {
     uint8_t visibility = kSeenByAll;
     bool shadow = true, exclusive = false;
     int maxBounces = std::numeric_limits<int>::max();
-    uint32_t environment = 0;  // its index
+    uint32_t environment = 0;      // its index
+    const Light* light = nullptr;  // where it has a program
   };
   float probability(size_t emitter) const {
     return table_.empty() ? 0 : table_.probability(static_cast<uint32_t>(emitter));
@@ -100,7 +101,11 @@ class Emitters {
   static float cosine(const Lamp& lamp, Vec3f d);
   static bool sampledByArea(const Lamp& lamp, float height, float d2);
   static Rgb profile(const Lamp& lamp, Vec3f fromLight);  // radiance or intensity in a direction leaving the light
-  bool meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax, EmitterHit& hit) const;
+  // What the lamp's program makes of its light in the direction d from a point, t away.
+  Rgb factor(const Lamp& lamp, Vec3f from, Vec3f d, float t, int bounces) const;
+  // The mean of that over directions, by the light that goes there.
+  double meanFactor(const Lamp& lamp, float distance) const;
+  bool meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax, int bounces, EmitterHit& hit) const;
   LightSample sampleRectangle(const Lamp& lamp, Vec3f from, Vec2f u) const;
   float pdfRectangle(const Lamp& lamp, Vec3f from, float t, float cosLight) const;
 
@@ -122,10 +127,10 @@ template <class F>
 void Emitters::along(const Ray& ray, float tMax, bool escaped, int bounces, F&& f) const {
   EmitterHit hit;
   for (uint32_t i : finite_)
-    if (bounces <= lamps_[i].maxBounces && meets(lamps_[i], i, ray, tMax, hit)) f(hit);
+    if (bounces <= lamps_[i].maxBounces && meets(lamps_[i], i, ray, tMax, bounces, hit)) f(hit);
   if (!escaped) return;
   for (uint32_t i : infinite_)
-    if (bounces <= lamps_[i].maxBounces && meets(lamps_[i], i, ray, tMax, hit)) f(hit);
+    if (bounces <= lamps_[i].maxBounces && meets(lamps_[i], i, ray, tMax, bounces, hit)) f(hit);
 }
 
 }  // namespace wardmis

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "math/number.h"
+#include "math/warp.h"
 #include "scene/inputs.h"
 
 namespace wardmis {
@@ -46,12 +47,91 @@ Environment::Environment(const Scene& scene, const World& world) : scene_(scene)
   determinant_ = std::abs(det);
 
   exists_ = !isBlack(world.radiance);
-  if (!exists_ || (world.visibility & kSeenBySurfaces) == 0) return;
-  if (world.texture < 0) {
-    integral_ = 4 * kPi<float> * strength(world.radiance);
-    return;
+  if (world.coneAngle > 0) {
+    const Vec3f z = world.coneAxis;
+    axis_ = scene.zUp ? Vec3f{z.x, z.z, -z.y} : z;
+    const float s = std::sin(0.25f * world.coneAngle);
+    oneMinusCos_ = 2 * s * s;
   }
+  if (!exists_ || (world.visibility & kSeenBySurfaces) == 0) return;
+  if (oneMinusCos_ > 0)
+    measureCone();
+  else if (world.program)
+    tabulateProgram();
+  else if (world.texture >= 0)
+    tabulateImage();
+  else
+    integral_ = 4 * kPi<float> * strength(world.radiance);
+}
 
+// What it shines on the average over points of the cone.
+void Environment::measureCone() {
+  constexpr int kPoints = 16;  // a side
+  double sum = 0;
+  for (int y = 0; y < kPoints; ++y)
+    for (int x = 0; x < kPoints; ++x) {
+      const ChoicePoint u{(x + 0.5) / kPoints, (static_cast<float>(y) + 0.5f) / kPoints};
+      sum += double(strength(radiance(sample(u))));
+    }
+  integral_ = static_cast<float>(sum / (kPoints * kPoints) * 2 * kPi<double> * double(oneMinusCos_));
+}
+
+void Environment::makeBands() {
+  for (int y = 0; y < height_; ++y) {
+    const bool up = 2 * y >= height_;
+    const double step = kPi<double> / height_, from = step * (up ? height_ - 1 - y : y);
+    const auto fromPole = [](double angle) { return 2 * std::pow(std::sin(angle / 2), 2); };
+    const double height = 2 * std::sin(from + step / 2) * std::sin(step / 2);
+    bands_.push_back({static_cast<float>(fromPole(from)), static_cast<float>(height), up});
+  }
+}
+
+// The table's cells hold what the program makes of a grid of directions, four to a cell, its borders among them. What
+// shines between them alone is left to the surface's techniques; every cell has a chance, so that they are not the only
+// ones that find it.
+void Environment::tabulateProgram() {
+  width_ = 512, height_ = 256;
+  for (const uint32_t t : world_.program->textures) {
+    const Image& image = scene_.images[static_cast<size_t>(scene_.textures[t].image)];
+    width_ = std::clamp(image.width, width_, kMaxTableWidth),
+    height_ = std::clamp(image.height, height_, kMaxTableHeight);
+  }
+  makeBands();
+  const size_t columns = 2 * static_cast<size_t>(width_), rows = 2 * static_cast<size_t>(height_) + 1;
+  std::vector<float> grid(columns * rows);
+  tbb::parallel_for(size_t{0}, rows, [&](size_t j) {
+    const double polar = kPi<double> * double(j) / double(rows - 1);  // from -z
+    const float z = static_cast<float>(-std::cos(polar)), r = static_cast<float>(std::sin(polar));
+    for (size_t i = 0; i < columns; ++i) {
+      const double phi = kPi<double> - 2 * kPi<double> * double(i) / double(columns);
+      const Vec3f d = fromImage({r * static_cast<float>(std::cos(phi)), r * static_cast<float>(std::sin(phi)), z});
+      const float value = strength(radiance(d));
+      grid[j * columns + i] = std::isfinite(value) ? value : 0;
+    }
+  });
+  std::vector<double> weights(static_cast<size_t>(width_) * static_cast<size_t>(height_));
+  double all = 0;
+  for (size_t y = 0; y < static_cast<size_t>(height_); ++y)
+    for (size_t x = 0; x < static_cast<size_t>(width_); ++x) {
+      double sum = 0;
+      for (size_t j = 0; j < 3; ++j)
+        for (size_t i = 0; i < 3; ++i) sum += double(grid[(2 * y + j) * columns + (2 * x + i) % columns]);
+      double& weight = weights[y * static_cast<size_t>(width_) + x];
+      weight = sum / 9 * double(bands_[y].height) * 2 * kPi<double> / width_;
+      all += weight;
+    }
+  constexpr double kLeast = 0.01;  // of the mean
+  for (size_t i = 0; i < weights.size(); ++i) {
+    const double solidAngle = double(bands_[i / static_cast<size_t>(width_)].height) * 2 * kPi<double> / width_;
+    weights[i] = std::max(weights[i], kLeast * all * solidAngle / (4 * kPi<double>));
+  }
+  table_ = AliasTable(weights);
+  integral_ = static_cast<float>(table_.sum());
+}
+
+void Environment::tabulateImage() {
+  const World& world = world_;
+  const Scene& scene = scene_;
   // The table's cells hold the image's luminance, taken over each cell from a grid of looked-up values, so that the
   // density is positive wherever the interpolated image is.
   const Image& image = scene.images[static_cast<size_t>(scene.textures[static_cast<size_t>(world.texture)].image)];
@@ -66,13 +146,7 @@ Environment::Environment(const Scene& scene, const World& world) : scene_(scene)
     const float phi = kPi<float> * (1 - 2 * u), radius = 0.5f * std::sin(0.5f * kPi<float> * v);
     return Vec2f{0.5f + radius * std::sin(phi), 0.5f + radius * std::cos(phi)};
   };
-  for (int y = 0; y < height_; ++y) {
-    const bool up = 2 * y >= height_;
-    const double step = kPi<double> / height_, from = step * (up ? height_ - 1 - y : y);
-    const auto fromPole = [](double angle) { return 2 * std::pow(std::sin(angle / 2), 2); };
-    const double height = 2 * std::sin(from + step / 2) * std::sin(step / 2);
-    bands_.push_back({static_cast<float>(fromPole(from)), static_cast<float>(height), up});
-  }
+  makeBands();
   std::vector<double> weights(static_cast<size_t>(width_) * static_cast<size_t>(height_));
   TextureUse use;
   use.texture = world.texture;
@@ -118,7 +192,9 @@ Vec3f Environment::fromImage(Vec3f d) const {
   return scene_.zUp ? Vec3f{z.x, z.z, -z.y} : z;
 }
 
-Rgb Environment::radiance(Vec3f direction) const {
+Rgb Environment::radiance(Vec3f direction, const SkyRay& ray) const {
+  if (oneMinusCos_ > 0 && !inCone(direction)) return {0, 0, 0};
+  if (world_.program) return skyRadiance(scene_, world_, direction, ray);
   if (world_.texture < 0) return world_.radiance;
   TextureUse use;
   use.texture = world_.texture;
@@ -137,12 +213,14 @@ Vec3f Environment::inCell(int x, size_t y, float u, float v) const {
 }
 
 Vec3f Environment::sample(ChoicePoint u) const {
+  if (oneMinusCos_ > 0) return Framef::around(axis_).toWorld(toCone(Vec2f{toCoordinate(u.x), u.y}, oneMinusCos_));
   const uint32_t cell = table_.sample(u.x);
   const auto width = static_cast<uint32_t>(width_);
   return fromImage(inCell(static_cast<int>(cell % width), cell / width, toCoordinate(u.x), u.y));
 }
 
 float Environment::pdf(Vec3f direction) const {
+  if (oneMinusCos_ > 0) return inCone(direction) ? 1 / (2 * kPi<float> * oneMinusCos_) : 0;
   if (table_.empty()) return 0;
   const Vec3f image = toImage(direction);
   const Vec2f uv = equirectangular(image);

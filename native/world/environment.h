@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Light from infinitely far in all directions: a constant, or an image with importance sampling.
+// Light from infinitely far: a constant, an image or a program, the latter two with importance sampling.
 #pragma once
 
 #include "math/random.h"
 #include "math/vec.h"
 #include "scene/scene.h"
 #include "world/alias.h"
+#include "world/shading.h"
 
 namespace wardmis {
 
@@ -17,16 +18,24 @@ class Environment {
   const World& world() const { return world_; }
   // Worth sampling by itself. A constant sky is not: the techniques of the surface cover it evenly; nor is one that no
   // surface sees.
-  bool sampled() const { return !table_.empty(); }
+  bool sampled() const { return !table_.empty() || oneMinusCos_ > 0; }
   // Mean radiance over the sphere times 4 pi, by luminance.
   float integral() const { return integral_; }
 
-  Rgb radiance(Vec3f direction) const;
+  Rgb radiance(Vec3f direction, const SkyRay& ray = {}) const;
   // A direction of density pdf(direction), per solid angle.
   Vec3f sample(ChoicePoint u) const;
   float pdf(Vec3f direction) const;
 
  private:
+  void tabulateImage();
+  void tabulateProgram();
+  void measureCone();
+  void makeBands();
+  bool inCone(Vec3f direction) const {
+    const Vec3f apart = direction - axis_;  // 1 - cos = |d - a|^2 / 2, exact for narrow cones
+    return 0.5f * dot(apart, apart) <= oneMinusCos_;
+  }
   // World -> the frame of the table, not normalised: the world's matrix may be any that has an inverse.
   Vec3f toImage(Vec3f world) const;
   Vec3f fromImage(Vec3f image) const;  // unit -> unit
@@ -39,6 +48,8 @@ class Environment {
   const World& world_;
   bool exists_ = false;
   float integral_ = 0;
+  Vec3f axis_{0, 0, 1};    // of a sky that is within a cone alone
+  float oneMinusCos_ = 0;  // of its half angle; 0: there is no cone
   // The table's cells lie between meridians and parallels about this frame's z axis. It is that of an equirectangular
   // image; in a mirror ball's, z is the axis of the ball, towards which all of the image's rim looks, so that its
   // meridians are straight and its parallels circles about the middle.

@@ -62,7 +62,7 @@ std::vector<std::string> leftOut(const Scene& scene, uint32_t n, const Emitters&
   add(kNeedsBounces, "direct light only: no paths, no Russian roulette");
   if ((n & kNeedsEnvironment) == 0)
     out.emplace_back("no environment: none sampled");
-  else if (std::ranges::all_of(scene.worlds, [](const World& w) { return w.texture < 0; }))
+  else if (std::ranges::all_of(scene.worlds, [](const World& w) { return w.texture < 0 && !w.program; }))
     out.emplace_back("constant environment: not aimed at, the surface's own techniques cover it evenly");
   if ((n & kNeedsLightSampling) == 0)
     out.emplace_back("no lights to aim at: no light samples, nothing to allocate, no pilot");

@@ -10,6 +10,8 @@
 namespace wardmis {
 namespace {
 
+constexpr float kEndless = 3.4e38f;  // length of a ray that meets nothing
+
 // From the file's axes of the world to those that the scene is told in. Object space is the mesh's own in both.
 struct FrameOf {
   bool zUp;
@@ -131,6 +133,36 @@ void fillAttributes(const ShadedPoint& p, const Program& program, const uint32_t
   }
 }
 
+void fillCamera(const Scene& scene, const Program& program, ShadingContext& c) {
+  if ((program.reads & kReadsCamera) == 0 || !scene.camera) return;
+  const FrameOf frame{scene.zUp};
+  const Camera& camera = *scene.camera;
+  const Affine& m = camera.toWorld;
+  c.camera = {frame(m.x), frame(m.y), -frame(m.z), frame(m.t)};
+  c.orthographic = camera.orthographic();
+  const Film& f = scene.film;
+  const auto along = [](float from, float to, int k, int n) {
+    return from + (to - from) * static_cast<float>(k) / static_cast<float>(n);
+  };
+  c.window[0] = along(camera.left, camera.right, f.x0, f.width);
+  c.window[1] = along(camera.left, camera.right, f.x1, f.width);
+  c.window[2] = along(camera.bottom, camera.top, f.y0, f.height);
+  c.window[3] = along(camera.bottom, camera.top, f.y1, f.height);
+  if (camera.panoramic()) {
+    // steps of a pixel, not of a derivative: that is what a shift asks for
+    const auto seen = [&](Vec3f at) {
+      const Vec3f q = vectors::inversePoint(c.camera, c.isObject ? at : at + c.camera.t);
+      const Vec2f v = panoramaPoint(camera, safeNormalize(Vec3f{q.x, q.y, -q.z}));
+      return Vec3f{(v.x - c.window[0]) / (c.window[1] - c.window[0]), (v.y - c.window[2]) / (c.window[3] - c.window[2]),
+                   0};
+    };
+    c.panoramic = true;
+    c.panorama.value = seen(c.position.value);
+    c.panorama.dx = seen(c.position.value + c.position.dx) - c.panorama.value;
+    c.panorama.dy = seen(c.position.value + c.position.dy) - c.panorama.value;
+  }
+}
+
 void fill(const Scene& scene, const ShadedPoint& p, const Program& program, ShadingContext& c) {
   const FrameOf frame{scene.zUp};
   const MeshPart& part = *p.shape.part;
@@ -198,33 +230,7 @@ void fill(const Scene& scene, const ShadedPoint& p, const Program& program, Shad
       c.random = data->random;
     }
   }
-  if ((program.reads & kReadsCamera) != 0 && scene.camera) {
-    const Camera& camera = *scene.camera;
-    const Affine& m = camera.toWorld;
-    c.camera = {frame(m.x), frame(m.y), -frame(m.z), frame(m.t)};
-    c.orthographic = camera.orthographic();
-    const Film& f = scene.film;
-    const auto along = [](float from, float to, int k, int n) {
-      return from + (to - from) * static_cast<float>(k) / static_cast<float>(n);
-    };
-    c.window[0] = along(camera.left, camera.right, f.x0, f.width);
-    c.window[1] = along(camera.left, camera.right, f.x1, f.width);
-    c.window[2] = along(camera.bottom, camera.top, f.y0, f.height);
-    c.window[3] = along(camera.bottom, camera.top, f.y1, f.height);
-    if (camera.panoramic()) {
-      // steps of a pixel, not of a derivative: that is what a shift asks for
-      const auto seen = [&](Vec3f at) {
-        const Vec3f q = vectors::inversePoint(c.camera, at);
-        const Vec2f v = panoramaPoint(camera, safeNormalize(Vec3f{q.x, q.y, -q.z}));
-        return Vec3f{(v.x - c.window[0]) / (c.window[1] - c.window[0]),
-                     (v.y - c.window[2]) / (c.window[3] - c.window[2]), 0};
-      };
-      c.panoramic = true;
-      c.panorama.value = seen(c.position.value);
-      c.panorama.dx = seen(c.position.value + c.position.dx) - c.panorama.value;
-      c.panorama.dy = seen(c.position.value + c.position.dy) - c.panorama.value;
-    }
-  }
+  fillCamera(scene, program, c);
   c.path = p.path;
   c.rayLength = p.rayLength;
   if (p.path.depth == 0 && scene.camera) {  // rays of the camera begin at its near plane, as Cycles' do
@@ -240,6 +246,44 @@ void runProgram(const Scene& scene, const ShadedPoint& point, Slots& slots) {
   ShadingContext context;
   fill(scene, point, program, context);
   run(program, context, {scene.textures.data(), scene.images.data()}, slots);
+}
+
+Rgb skyRadiance(const Scene& scene, const World& world, Vec3f direction, const SkyRay& ray) {
+  const FrameOf frame{scene.zUp};
+  const Program& program = *world.program;
+  ShadingContext c;
+  c.isObject = false;
+  const Vec3f d = frame(direction);
+  c.position = c.generated = {d, {}, {}};
+  c.normal = c.trueNormal = c.incoming = -d;
+  std::fill_n(c.color, 4, 0.0f);
+  fillCamera(scene, program, c);
+  c.rayOrigin = frame(ray.origin);
+  c.path.kinds = ray.camera ? kCameraRay : 0;
+  c.path.depth = static_cast<uint8_t>(ray.camera ? 0 : std::min(ray.bounces + 1, 255));
+  c.rayLength = kEndless;
+  Slots slots;
+  run(program, c, {scene.textures.data(), scene.images.data()}, slots);
+  return world.radiance * vectorOf(program, slots, world.result);
+}
+
+Rgb lightFactor(const Scene& scene, const Light& light, const LitPoint& point) {
+  const FrameOf frame{scene.zUp};
+  const Program& program = *light.program;
+  ShadingContext c;
+  c.position = {frame(point.position), {}, {}};
+  c.normal = c.trueNormal = frame(point.normal);
+  c.incoming = frame(point.direction);
+  c.toWorld = frame(light.toWorld);
+  c.generated = {vectors::inversePoint(c.toWorld, c.position.value), {}, {}};
+  std::fill_n(c.color, 4, 0.0f);
+  fillCamera(scene, program, c);
+  c.path.kinds = 0;  // as of all that shines: it is looked at for rays of any kind
+  c.path.depth = static_cast<uint8_t>(std::min(point.bounces + 1, 255));
+  c.rayLength = point.distance;
+  Slots slots;
+  run(program, c, {scene.textures.data(), scene.images.data()}, slots);
+  return vectorOf(program, slots, light.result);
 }
 
 Rgb emissionAt(const Scene& scene, const Placement& placement, const Shape& shape, uint32_t triangle, float u, float v,

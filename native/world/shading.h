@@ -30,6 +30,25 @@ void runProgram(const Scene& scene, const ShadedPoint& point, Slots& slots);
 Rgb emissionAt(const Scene& scene, const Placement& placement, const Shape& shape, uint32_t triangle, float u, float v,
                Vec3f from, int bounces, float time = kMiddle);
 
+// Who looks at the sky, and from where.
+struct SkyRay {
+  Vec3f origin{};
+  bool camera = false;  // else a surface
+  int bounces = 0;      // by which the path has come there
+};
+// What the world's program makes in a unit direction, times its constant.
+Rgb skyRadiance(const Scene& scene, const World& world, Vec3f direction, const SkyRay& ray);
+
+// A point of a light as it is seen. World space; of a sun, all but the distance is the direction of its light.
+struct LitPoint {
+  Vec3f position, normal;
+  Vec3f direction;  // of the light from there: unit
+  float distance;   // that it goes
+  int bounces;      // by which the path has come to where it goes
+};
+// What the light's program multiplies it by.
+Rgb lightFactor(const Scene& scene, const Light& light, const LitPoint& point);
+
 // A value that an input refers to; 0 for what is not finite.
 inline float finiteOrZero(float v) { return std::isfinite(v) ? v : 0; }
 inline float numberOf(const Program& program, const Slots& slots, int result) {

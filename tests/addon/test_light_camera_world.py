@@ -235,12 +235,15 @@ class Lights(SceneTest):
         emission.inputs["Color"].default_value = (0.5, 1, 1, 1)
         emission.inputs["Strength"].default_value = 4
         self.assertEqual(self.only().color, (2, 4, 4))
+        self.assertIsNone(self.only().program)
         texture = data.node_tree.nodes.new("ShaderNodeTexChecker")
         data.node_tree.links.new(texture.outputs["Color"], emission.inputs["Color"])
         texture.inputs["Color1"].default_value, texture.inputs["Color2"].default_value = (0.8, 0, 0, 1), (0.2, 0, 1, 1)
-        scene = self.gather()
-        np.testing.assert_allclose(scene.lights[0].color, (2, 0, 2), rtol=1e-6)
-        self.assertIn("light 'Light': node 'Checker Texture'", scene.notes[0])
+        light = self.only()
+        self.assertEqual(light.color, (4, 4, 4))
+        self.assertIn("checker", [o["op"] for o in light.program.operations])
+        self.assertEqual(light.program.operations[light.result]["op"], "mix")
+        self.assertEqual(self.gather().notes, [])
 
     def test_nodes_of_a_light_as_cycles_sees_them(self):
         data = self.light("POINT").data
@@ -253,8 +256,8 @@ class Lights(SceneTest):
         self.assertEqual(self.only().color, (7, 7, 7))
         self.assertEqual(self.gather().notes, [])
         tree.links.new(falloff.outputs["Linear"], emission.inputs["Strength"])
-        self.assertEqual(self.only().color, (7, 7, 7))
-        self.assertIn("node 'Light Falloff' (Light Falloff) is not supported", self.gather().notes[0])
+        self.assertEqual(self.only().program.operations[0]["op"], "light-falloff-linear")
+        self.assertEqual(self.gather().notes, [])
         emission.mute = True
         scene = self.gather()
         self.assertEqual(scene.lights, [])
@@ -521,10 +524,14 @@ class World(SceneTest):
                 np.testing.assert_allclose(self.only(scene).matrix, np.diag(stretched), atol=1e-6)
                 self.assertEqual(scene.notes, [])
 
-    def test_what_is_not_understood_is_noted(self):
+    def test_what_is_more_than_an_image_is_a_program(self):
         self.environment("POINT", scale=(1, 0, 1))
-        notes = "\n".join(self.gather().notes)
-        self.assertIn("node 'Mapping' (Mapping) flattens the sky; its scale is left out", notes)
+        scene = self.gather()
+        self.assertEqual(self.only(scene).texture, None)
+        names = [o["op"] for o in self.only(scene).program.operations]
+        self.assertEqual(
+            (names, self.only(scene).radiance, scene.notes), (["direction", "mapping", "environment"], (2, 2, 2), [])
+        )
 
     def test_mirror_ball(self):
         self.environment("POINT", scale=(1, 2, 1)).projection = "MIRROR_BALL"
@@ -570,8 +577,11 @@ class World(SceneTest):
                 self.assertEqual([(w.radiance[0], kinds - w.hidden_from) for w in scene.worlds], expected)
                 self.assertEqual(scene.notes, [])
                 self.assertEqual({w.max_bounces for w in scene.worlds}, {3 if len(expected) > 1 else 1024})
-        self.tree.links.new(path.outputs["Ray Length"], add.inputs[0])
-        self.assertIn("0 as its Ray Length is used instead", self.gather().notes[0])
+        self.tree.links.new(path.outputs["Diffuse Depth"], add.inputs[0])
+        self.assertIn("0 as its Diffuse Depth is used instead", self.gather().notes[0])
+        self.tree.links.new(path.outputs["Ray Depth"], add.inputs[0])
+        scene = self.gather()
+        self.assertEqual((next(o["op"] for o in self.only(scene).program.operations), scene.notes), ("ray-depth", []))
 
     def test_missing_image_is_grey_and_a_sky_its_mean(self):
         self.environment(None).image = None
@@ -619,7 +629,7 @@ class World(SceneTest):
         grouped.mute = True
         self.assertEqual(self.gather().worlds, [])
 
-    def test_sky_behind_nodes_is_baked(self):
+    def test_sky_behind_nodes_is_a_program(self):
         texture = self.environment(None)
         texture.image.pixels.foreach_set(
             np.tile(np.float32((0.5, 0.5, 0.5, 1)), 8 * 4)
@@ -630,5 +640,5 @@ class World(SceneTest):
         self.tree.links.new(gamma.outputs["Color"], self.background.inputs["Color"])
         scene = self.gather()
         self.assertEqual(self.only(scene).radiance, (2, 2, 2))
-        np.testing.assert_allclose(scene.images[scene.textures[self.only(scene).texture].image].pixels, 0.25, rtol=1e-6)
+        self.assertEqual([o["op"] for o in self.only(scene).program.operations], ["direction", "environment", "gamma"])
         self.assertEqual(scene.notes, [])

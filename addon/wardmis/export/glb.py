@@ -492,6 +492,10 @@ def _world(world: WorldData) -> dict[str, Any]:
     result: dict[str, Any] = {"radiance": list(world.radiance), **_visibility(world.hidden_from)}
     if world.max_bounces != WorldData.max_bounces:
         result["maxBounces"] = world.max_bounces
+    if world.cone is not None:
+        result["cone"] = {"axis": list(world.cone[:3]), "angle": world.cone[3]}
+    if world.program is not None:
+        result |= {"program": {"operations": world.program.operations}, "result": world.result}
     if world.texture is not None:
         result["texture"] = {"index": world.texture, "matrix": world.matrix.reshape(-1).tolist()}
         if world.projection != WorldData.projection:
@@ -517,6 +521,8 @@ def _light(light: LightData) -> dict[str, Any]:
         result |= {"intensity": light.emission, "radius": light.radius, "facing": light.facing}
         if light.type == "spot":
             result |= {"angle": light.angle, "blend": light.blend, "cosine": light.cosine}
+    if light.program is not None:
+        result |= {"program": {"operations": light.program.operations}, "result": light.result}
     return result
 
 

@@ -15,10 +15,12 @@ from mathutils import Vector
 
 from .. import compat
 from .context import ExportContext, ExportError
-from .model import LARGEST, LightData, Rgb
-from .shader import shader
+from .model import LARGEST, LightData
+from .program.closures import BLACK
+from .program.emission import Light, emission
+from .program.reader import Reader
+from .read import NotFinite
 from .tree import Owner, output_use
-from .value import NotFinite
 
 SHEARED = 1e-3  # the cosine between an area light's sides, from which on they count as not orthogonal
 WIDE = 1e-4  # a spread that is nearer to 180 degrees is none
@@ -30,7 +32,8 @@ def export_light(
     """None for a light that gives no light, and for Cycles' light portals, which are hints only."""
     if light.type == "AREA" and getattr(getattr(light, "cycles", None), "is_portal", False):
         return None
-    node_factor = _node_factor(light, context) if compat.uses_nodes(light) else (1.0, 1.0, 1.0)
+    nodes = _nodes(light, context) if compat.uses_nodes(light) else None
+    node_factor = nodes.factor if nodes else (1.0, 1.0, 1.0)
     power = light.energy * compat.light_exposure(light)
     temperature = compat.light_temperature_color(light)
     color = tuple(c * t * n for c, t, n in zip(light.color, temperature, node_factor))
@@ -41,6 +44,8 @@ def export_light(
     data = LightData(name, light.type.lower(), matrix, color, 0.0, hidden_from=hidden_from)
     data.shadow = compat.light_casts_shadow(light)
     data.max_bounces = compat.max_bounces(light)
+    if nodes:
+        data.program, data.result = nodes.program, nodes.result
     {"AREA": _area, "POINT": _point, "SPOT": _spot, "SUN": _sun}[light.type](light, power, data, context)
     if math.isinf(data.emission):
         context.note(f"light '{light.name}': its area is zero, so that it gives no light; set a size or a scale")
@@ -52,21 +57,21 @@ def export_light(
     return data
 
 
-def _node_factor(light: Any, context: ExportContext) -> Rgb:
+def _nodes(light: Any, context: ExportContext) -> Light:
     """What the light's nodes multiply the light by."""
     owner = Owner("light", f"light '{light.name}'", context)
     output = output_use(light.node_tree, "Surface", owner)
+    p = Reader("light")
     try:
         if output is None or output.source("Surface").is_nothing:
             context.note(f"{owner.place}: no node is connected to its output; it gives no light")
-            return (0.0, 0.0, 0.0)
-        r, g, b = (float(v) for v in shader(output, "Surface").emission.mean().factor)
+        else:
+            return Light(p, emission(p, output), owner)
     except RecursionError:
         context.note(f"{owner.place} has nodes that are linked in a circle; it gives no light")
-        return (0.0, 0.0, 0.0)
     except NotFinite:
-        return (0.0, 0.0, 0.0)  # noted where it was found
-    return (r, g, b)
+        pass  # noted where it was found
+    return Light(p, BLACK, owner)
 
 
 def _area(light: Any, power: float, data: LightData, context: ExportContext) -> None:

@@ -221,6 +221,8 @@ class LightData:
     shadow: bool = True
     max_bounces: int = 1024  # of paths whose surfaces it lights
     hidden_from: frozenset[str] = frozenset()
+    program: ProgramData | None = None  # the light is multiplied by its value `result`
+    result: int = 0
 
 
 @dataclass
@@ -257,10 +259,15 @@ class FilmData:
 class WorldData:
     """A sky; several lie over each other, as a rule for other kinds of ray each."""
 
-    radiance: Rgb = (0.0, 0.0, 0.0)
+    radiance: Rgb = (0.0, 0.0, 0.0)  # times what the texture, or value `result` of the program, has in a direction
     texture: int | None = None  # index into SceneData.textures
+    program: ProgramData | None = None
+    result: int = 0
     matrix: np.ndarray = field(default_factory=lambda: np.eye(3))
     projection: str = "equirectangular"  # or "mirror-ball"
+    cone: tuple[float, float, float, float] | None = (
+        None  # a direction, and the full angle around it from which light comes alone
+    )
     hidden_from: frozenset[str] = frozenset()
     max_bounces: int = 1024  # as of a light
 

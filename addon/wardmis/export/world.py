@@ -1,18 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Blender's world -> skies for kinds of ray: constant radiances, or images of all directions times a factor."""
+"""Blender's world -> skies for kinds of ray: constant radiances, images of all directions, programs."""
 
 from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from .. import compat
 from .context import ExportContext
 from .model import WorldData, not_finite
-from .shader import shader
+from .program.emission import Light, emission, image_of_directions
+from .program.reader import Reader
+from .read import NotFinite
 from .tree import RAYS, Owner, output_use
-from .value import Calculator, NotFinite, Value
 
 
 def export_worlds(world: Any, context: ExportContext) -> list[WorldData]:
@@ -23,7 +22,7 @@ def export_worlds(world: Any, context: ExportContext) -> list[WorldData]:
     _note_settings(world, Owner("world", place, context))
     seen = {ray: _seen(world, Owner("world", place, context, ray)) for ray in RAYS}
     # as in Cycles, a sky that is one colour for all rays has no limit
-    limited = any(_key(sky) != _key(seen["camera"]) or sky.texture is not None for sky in seen.values())
+    limited = any(_key(sky) != _key(seen["camera"]) or not _is_one_color(sky) for sky in seen.values())
     limit = compat.max_bounces(world) if limited else WorldData.max_bounces
     skies: dict[Any, tuple[WorldData, set[str]]] = {}
     for ray, sky in seen.items():
@@ -35,8 +34,13 @@ def export_worlds(world: Any, context: ExportContext) -> list[WorldData]:
     return [sky for sky, _ in skies.values()]
 
 
+def _is_one_color(sky: WorldData) -> bool:
+    return sky.texture is None and sky.program is None
+
+
 def _key(sky: WorldData) -> Any:
-    return (sky.radiance, sky.texture, sky.projection, sky.matrix.tobytes())
+    operations = repr(sky.program.operations) if sky.program else ""
+    return (sky.radiance, sky.texture, sky.projection, sky.matrix.tobytes(), operations, sky.result, sky.cone)
 
 
 def _seen(world: Any, owner: Owner) -> WorldData:
@@ -62,18 +66,16 @@ def _translate(world: Any, owner: Owner) -> WorldData:
     if output is None or output.source("Surface").is_nothing:
         owner.context.note(f"{owner.place}: no node is connected to its output; it gives no light")
         return WorldData()
-    return _radiance(shader(output, "Surface").emission, owner)
-
-
-def _radiance(emission: Value, owner: Owner) -> WorldData:
-    calc = Calculator(owner)
-    color = calc.light_input(emission)
-    lookup = emission.lookup
-    if color.texture is None or lookup is None:
-        return WorldData(color.value)
-    return WorldData(
-        color.value, color.texture.index, np.array(lookup.transform).reshape(3, 3), projection=lookup.projection
-    )
+    p = Reader("world")
+    value = emission(p, output)
+    light = Light(p, value, owner)
+    if light.program is None:
+        return WorldData(light.factor)
+    image = image_of_directions(p, light.value)
+    if image is not None:
+        texture, projection, matrix = image
+        return WorldData(light.factor, texture, matrix=matrix, projection=projection)
+    return WorldData(light.factor, program=light.program, result=light.result)
 
 
 def _note_settings(world: Any, owner: Owner) -> None:

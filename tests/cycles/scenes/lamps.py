@@ -180,14 +180,84 @@ def muted_nodes():
 
 @scene
 def falloff():
-    """Quadratic falloff is what light does; of the others the strength is kept."""
+    """Quadratic falloff is what light does; the others fall off less, or not at all."""
     things()
-    made = lamp("POINT", (-2, -2, 4), 100, RED)
-    made.data.use_nodes = True
-    tree = made.data.node_tree
-    node = add(tree, "LightFalloff", Strength=3.0)
-    tree.links.new(node.outputs["Quadratic"], tree.nodes["Emission"].inputs["Strength"])
-    lamp("POINT", (2, -3, 3), 300, GREEN)
+    for kind, position, power, color in (
+        ("Quadratic", (-2, -2, 4), 100, RED),
+        ("Linear", (2, -3, 3), 30, GREEN),
+        ("Constant", (0.5, 1, 3), 10, BLUE),
+    ):
+        tree = tree_of(lamp("POINT", position, power, color))
+        node = add(tree, "LightFalloff", Strength=3.0)
+        tree.links.new(node.outputs[kind], tree.nodes["Emission"].inputs["Strength"])
+
+
+@scene
+def smoothed_falloff():
+    things()
+    for kind, position, power, color, size in (
+        ("Quadratic", (-1, -1, 1.5), 100, RED, 0.0),
+        ("Quadratic", (2, -2, 1), 100, GREEN, 0.4),
+        ("Linear", (0.5, 1, 3), 60, BLUE, 0.2),
+    ):
+        tree = tree_of(lamp("POINT", position, power, color, shadow_soft_size=size))
+        node = add(tree, "LightFalloff", Strength=3.0, Smooth=1.5)
+        tree.links.new(node.outputs[kind], tree.nodes["Emission"].inputs["Strength"])
+
+
+def tree_of(obj):
+    obj.data.use_nodes = True
+    return obj.data.node_tree
+
+
+@scene
+def projected_patterns():
+    """Of each kind of lamp, by the direction of its light as the lamp has it."""
+    things()
+    for kind, position, power, color in (
+        ("POINT", (-2, -2, 4), 300, RED),
+        ("SPOT", (2, -3, 3), 300, GREEN),
+        ("SUN", (1, 2, 4), 2, BLUE),
+    ):
+        tree = tree_of(lamp(kind, position, power, color))
+        texture = add(tree, "TexChecker", Vector=add(tree, "TexCoord").outputs["Normal"], Scale=4.3)
+        tree.links.new(texture.outputs["Fac"], tree.nodes["Emission"].inputs["Strength"])
+
+
+@scene
+def pattern_on_an_area():
+    """By the place on the lamp, and a Fresnel of the angle that it is seen at."""
+    things()
+    tree = tree_of(lamp("AREA", (-2, -2, 3), 100, RED, size=2))
+    texture = add(tree, "TexChecker", Vector=add(tree, "NewGeometry").outputs["Position"], Scale=1.3)
+    tree.links.new(texture.outputs["Fac"], tree.nodes["Emission"].inputs["Strength"])
+    tree = tree_of(lamp("AREA", (2, -3, 3), 200, GREEN, size=1, shape="DISK"))
+    facing = add(tree, "LayerWeight", Blend=0.3)
+    tree.links.new(facing.outputs["Facing"], tree.nodes["Emission"].inputs["Strength"])
+    lamp("POINT", (0.5, 1, 3), 300, BLUE)
+
+
+@scene
+def light_path():
+    """Lamps are looked at for rays of all kinds at once: none of these is known."""
+    things()
+    tree = tree_of(lamp("AREA", (-2, -2, 3), 100, RED, size=2))
+    path = add(tree, "LightPath").outputs
+    total = path["Is Camera Ray"]
+    for name in ("Is Diffuse Ray", "Is Glossy Ray", "Is Shadow Ray"):
+        node = add(tree, "Math", {"operation": "ADD"})
+        tree.links.new(total, node.inputs[0])
+        tree.links.new(path[name], node.inputs[1])
+        total = node.outputs[0]
+    strength = add(tree, "Math", {"operation": "MULTIPLY_ADD"})
+    tree.links.new(total, strength.inputs[0])
+    strength.inputs[1].default_value, strength.inputs[2].default_value = 3.0, 0.5
+    tree.links.new(strength.outputs[0], tree.nodes["Emission"].inputs["Strength"])
+    tree = tree_of(lamp("POINT", (2, -3, 3), 100, GREEN))
+    length = add(tree, "Math", {"operation": "MULTIPLY"})
+    tree.links.new(add(tree, "LightPath").outputs["Ray Length"], length.inputs[0])
+    tree.links.new(length.outputs[0], tree.nodes["Emission"].inputs["Strength"])
+    lamp("POINT", (0.5, 1, 3), 300, BLUE)
 
 
 @scene

@@ -333,3 +333,115 @@ def max_bounces_of_one_color():
     things()
     sky((0.2, 0.5, 0.9))
     bpy.context.scene.world.cycles.max_bounces = 0
+
+
+# ---- skies that are computed ---------------------------------------------------------------------------------------
+
+
+def computed(color, build=things):
+    """A sky whose colour `color(tree, coordinates)` gives; the camera sees some of it."""
+    build()
+    tree = sky((1, 1, 1), 0.7)
+    tree.links.new(color(tree, add(tree, "TexCoord").outputs), tree.nodes["Background"].inputs["Color"])
+    bpy.context.scene.camera.rotation_euler = 1.4, 0, 0.05
+    bpy.context.scene.camera.data.lens = 22
+
+
+def height(tree, coordinates):
+    """From -1 below to 1 above."""
+    return add(tree, "SeparateXYZ", Vector=coordinates["Generated"]).outputs["Z"]
+
+
+@scene
+def gradient():
+    def color(tree, coordinates):
+        up = add(tree, "MapRange", Value=height(tree, coordinates))
+        up.inputs["From Min"].default_value = -1
+        ramp = add(tree, "ValToRGB", Fac=up.outputs[0])
+        ramp.color_ramp.elements[0].color, ramp.color_ramp.elements[1].color = (0.3, 0.2, 0.1, 1), (0.1, 0.3, 0.9, 1)
+        ramp.color_ramp.elements.new(0.55).color = 1.5, 1.2, 0.9, 1
+        return ramp.outputs["Color"]
+
+    computed(color, shiny_things)
+
+
+@scene
+def clouds():
+    def color(tree, coordinates):
+        scaled = add(tree, "Mapping", Vector=coordinates["Generated"], Scale=(1, 1, 3))
+        noise = add(tree, "TexNoise", Vector=scaled.outputs[0], Scale=1.5, Detail=4.0)
+        return add(tree, "Gamma", Color=noise.outputs["Color"], Gamma=2.0).outputs[0]
+
+    computed(color)
+
+
+@scene
+def image_behind_nodes():
+    def color(tree, coordinates):
+        picture = image("sky", pixels(64, 32), floats=True)
+        texture = add(tree, "TexEnvironment", {"image": picture}, Vector=coordinates["Generated"])
+        return add(tree, "HueSaturation", Color=texture.outputs[0], Hue=0.6, Saturation=1.2).outputs[0]
+
+    computed(color)
+
+
+@scene
+def image_over_a_gradient():
+    """Mixed by height, through a moved Mapping."""
+
+    def color(tree, coordinates):
+        moved = add(tree, "Mapping", Vector=coordinates["Generated"], Location=(0, 0, 0.3))
+        texture = add(
+            tree, "TexEnvironment", {"image": image("sky", pixels(64, 32), floats=True)}, Vector=moved.outputs[0]
+        )
+        share = add(tree, "Math", {"operation": "MULTIPLY_ADD", "use_clamp": True})
+        tree.links.new(height(tree, coordinates), share.inputs[0])
+        mix = add(tree, "MixRGB", Fac=share.outputs[0], Color1=(0.2, 0.4, 0.3, 1), Color2=texture.outputs[0])
+        return mix.outputs[0]
+
+    computed(color)
+
+
+@scene
+def other_coordinates():
+    """The normal, the reflection, position and incoming direction of a sky, and what sees it from the camera."""
+
+    def color(tree, coordinates):
+        geometry = add(tree, "NewGeometry").outputs
+        sums = [coordinates["Normal"], coordinates["Reflection"], coordinates["Camera"], geometry["Incoming"]]
+        total = geometry["Position"]
+        for one, scale in zip(sums, ((0.1, 0, 0.3), (0, 0.4, 0), (0.3, 0.2, 0.1), (-0.2, 0.3, 0.6))):
+            part = add(tree, "VectorMath", {"operation": "MULTIPLY_ADD"})
+            tree.links.new(one, part.inputs[0])
+            part.inputs[1].default_value = scale
+            tree.links.new(total, part.inputs[2])
+            total = part.outputs[0]
+        return add(tree, "VectorMath", {"operation": "ABSOLUTE"}, Vector=total).outputs[0]
+
+    computed(color)
+
+
+@scene
+def window_coordinates():
+    """A backdrop: each pixel of the image has its own colour, and directions beside it go on."""
+
+    def color(tree, coordinates):
+        wave = add(tree, "TexWave", Vector=coordinates["Window"], Scale=1.0)
+        return wave.outputs["Color"]
+
+    computed(color)
+
+
+@scene
+def computed_by_light_path():
+    """The camera sees a pattern, in the light of another."""
+    things()
+
+    def checker(scale):
+        def shader(tree):
+            texture = add(tree, "TexChecker", Vector=add(tree, "TexCoord").outputs["Generated"], Scale=scale)
+            return add(tree, "Background", Color=texture.outputs["Color"])
+
+        return shader
+
+    by_light_path("Is Camera Ray", checker(1.7), checker(5.0))

@@ -93,6 +93,51 @@ TEST(Programs, AreRefusedWithTheirInputs) {
 }
 
 // More values than slots wait for their use.
+// Of a world and a light: one value each, with textures of their own.
+TEST(Programs, BelongToWorldsAndLightsToo) {
+  GlbBuilder b = textured(ward({{"diffuse", {{"value", {1, 1, 1}}}}}));
+  rawTexture<uint8_t>(b, 1, 1, 3, {255, 128, 0});
+  const json operations = {{{"op", "direction"}}, {{"op", "environment"}, {"in", {{{"result", 0}}}}, {"texture", 0}}};
+  const json program = {{"operations", operations}};
+  b.extension()["version"] = 1;
+  b.extension()["world"] = {{"program", program}, {"result", 1}, {"cone", {{"axis", {0, 0, 2}}, {"angle", 0.5}}}};
+  b.extension()["lights"] = {{{"type", "point"}, {"intensity", 2}, {"program", program}, {"result", 0}}};
+  b.root["nodes"].push_back({{"extensions", {{"WARDMIS_scene", {{"light", 0}}}}}});
+  if (b.root.contains("scenes")) b.root["scenes"][0]["nodes"].push_back(b.root["nodes"].size() - 1);
+  const Scene s = read(b);
+  ASSERT_EQ(s.worlds.size(), 1u);
+  const World& world = s.worlds[0];
+  EXPECT_EQ(world.radiance.x, 1);
+  ASSERT_TRUE(world.program);
+  EXPECT_EQ(world.program->instructions.size(), 2u);
+  ASSERT_EQ(world.program->textures.size(), 1u);
+  EXPECT_LT(world.program->textures[0], s.textures.size());
+  EXPECT_EQ(world.result, 0);
+  EXPECT_EQ(world.coneAxis.z, 1);
+  EXPECT_EQ(world.coneAngle, 0.5f);
+  ASSERT_EQ(s.lights.size(), 1u);
+  ASSERT_TRUE(s.lights[0].program);
+  EXPECT_EQ(s.lights[0].program->instructions.size(), 1u);  // what is not asked for is dropped
+
+  const auto refused = [&](const char* expected, const char* where, const json& change) {
+    GlbBuilder bad = b;
+    json& owner = std::string(where) == "world" ? bad.extension()["world"] : bad.extension()["lights"][0];
+    owner.merge_patch(change);
+    expectHas(errorOf(bad), expected);
+  };
+  refused("world.result: refers to value 5, but the program has 2", "world", {{"result", 5}});
+  refused("'result' is missing", "world", {{"result", nullptr}});
+  refused("world.result: refers to a value, but there is no program", "world", {{"program", nullptr}});
+  refused("world.texture: stands beside a program", "world", {{"texture", {{"index", 0}}}});
+  refused("world.cone.axis: expected a direction", "world", {{"cone", {{"axis", {0, 0, 0}}}}});
+  refused("world.cone.angle: expected a number from", "world", {{"cone", {{"angle", 7}}}});
+  refused("world.program.operations[1] 'environment' .texture: refers to textures[9]", "world",
+          {{"program",
+            {{"operations", {operations[0], {{"op", "environment"}, {"in", {{{"result", 0}}}}, {"texture", 9}}}}}}});
+  refused("lights[0].result: expected a vector, found a number: value 0 is of operation 'ray-length'", "light",
+          {{"program", {{"operations", {{{"op", "ray-length"}}}}}}});
+}
+
 TEST(Programs, AreRefusedWhereTooMuchWaits) {
   json operations = json::array();
   for (int i = 0; i < 171; ++i) operations.push_back({{"op", "position"}, {"shift", "x"}, {"width", i}});

@@ -51,10 +51,13 @@ class Shading:
         assert origin is not None
         kind = origin.node.bl_idname
         if kind not in SHADERS:
-            origin.note("is not supported as a surface; rendered as grey and diffuse")
-            self.add(origin, "diffuse", weight, color=(0.8, 0.8, 0.8))
+            self.add_unknown(origin, weight)
             return
         SHADERS[kind](origin, self, weight)
+
+    def add_unknown(self, use: NodeUse, weight: Value) -> None:
+        use.note("is not supported as a surface; rendered as grey and diffuse")
+        self.add(use, "diffuse", weight, color=(0.8, 0.8, 0.8))
 
     def emit(self, radiance: Value, weight: Value) -> None:
         self.emission = self.p.add(self.emission, self.p.multiply(radiance, weight))

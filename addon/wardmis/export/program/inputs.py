@@ -5,11 +5,13 @@ from __future__ import annotations
 
 from typing import Any
 
+import bpy
+
 from ... import compat
 from ..attribute import DEFAULT_COLOR
 from ..read import own_value
 from ..tree import NodeUse
-from .builder import Value, constant
+from .builder import Value, constant, is_zero
 from .reader import Reader, kind_of_socket
 
 
@@ -120,6 +122,39 @@ LIGHT_PATH = {
     "Transparent Depth": "transparent-depth",
     "Transmission Depth": "transmission-depth",
 }
+
+
+# the kinds of ray for which they are 1; what glass lets pass is glossy, too
+OF_KIND = {
+    "is-camera-ray": {"camera"},
+    "is-diffuse-ray": {"diffuse"},
+    "is-glossy-ray": {"glossy", "transmission"},
+    "is-reflection-ray": {"diffuse", "glossy"},
+    "is-transmission-ray": {"transmission"},
+}
+
+
+def _light_path(use: NodeUse, output: Any, p: Reader) -> Value | None:
+    """Of a world as its kind of ray sees it; of a light, which is looked at for rays of all kinds at once, as Cycles does."""
+    name = LIGHT_PATH.get(output.name)
+    if name is None or use.owner.kind == "material" or name == "ray-depth":
+        return None if name is None else p(name)
+    ray = use.owner.ray
+    if name == "ray-length":
+        return 0.0 if use.owner.kind == "world" and compat.CYCLES < 5 else p(name)
+    if name.endswith("-depth"):
+        if ray != "camera":
+            use.note(f"is not supported as a colour or number; 0 as its {output.name} is used instead")
+        return 0.0
+    return float(ray in OF_KIND.get(name, ()))
+
+
+def _object_info(use: NodeUse, output: Any, p: Reader) -> Value | None:
+    if use.owner.kind == "world":
+        return constant(0.0, kind_of_socket(output.type))
+    return _by_output(OBJECT)(use, output, p)  # type: ignore[no-any-return]
+
+
 CAMERA = {"View Vector": "view-vector", "View Z Depth": "view-depth", "View Distance": "view-distance"}
 
 
@@ -138,7 +173,30 @@ def _layer_weight(use: NodeUse, output: Any, p: Reader) -> Value:
 
 def _light_falloff(use: NodeUse, output: Any, p: Reader) -> Value:
     strength, smooth = p.read(use, "Strength"), p.read(use, "Smooth")
+    if output.name == "Quadratic" and is_zero(smooth):  # what light does anyway
+        return strength
     return p(f"light-falloff-{output.name.lower()}", strength, smooth, version=compat.CYCLES)
+
+
+WITHOUT_IES = 100.0  # what Cycles has instead of a file
+MOST_OF_IES = 1 << 20  # bytes, within which the first keyword stands
+
+
+def _ies(use: NodeUse, _output: Any, p: Reader) -> Value | None:
+    """None: what a file says is not supported."""
+    node = use.node
+    if node.mode == "INTERNAL":
+        text = "" if node.ies is None else node.ies.as_string()
+    else:
+        try:
+            with open(bpy.path.abspath(node.filepath), encoding="latin-1") as file:
+                text = file.read(MOST_OF_IES)
+        except OSError:
+            text = ""
+    if "\nTILT=" in text:
+        return None
+    use.note("has no IES file; its strength counts a hundredfold, as in Cycles")
+    return p.multiply(p.read(use, "Strength"), WITHOUT_IES)
 
 
 def _bevel(use: NodeUse, _output: Any, p: Reader) -> Value:
@@ -160,12 +218,13 @@ NODES = {
     "Attribute": _attribute,
     "VertexColor": _vertex_color,
     "NewGeometry": _geometry,
-    "ObjectInfo": _by_output(OBJECT),
-    "LightPath": _by_output(LIGHT_PATH),
+    "ObjectInfo": _object_info,
+    "LightPath": _light_path,
     "CameraData": _by_output(CAMERA),
     "Fresnel": _fresnel,
     "LayerWeight": _layer_weight,
     "LightFalloff": _light_falloff,
+    "TexIES": _ies,
     "Bevel": _bevel,
     "AmbientOcclusion": _ambient_occlusion,
 }

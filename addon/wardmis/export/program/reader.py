@@ -17,21 +17,54 @@ from .builder import Builder, Result, Value, constant, is_constant, kind_of
 
 NUMBERS = {"VALUE", "INT", "BOOLEAN"}
 
+NOWHERE = (0.0, 0.0, 0.0)
+DIRECTION = "direction"
+# What stands for operations of place in worlds and lights; lights are objects to Cycles since 5.0.
+ELSEWHERE: dict[str, dict[str, str | Value]] = {
+    "world": {
+        "position": DIRECTION,
+        "generated": DIRECTION,
+        "object": DIRECTION,
+        "uv": NOWHERE,
+        "attribute": NOWHERE,
+        "attribute-number": 0.0,
+        "attribute-alpha": 0.0,
+    },
+    "light": {
+        "generated": "object" if compat.CYCLES >= 5 else "position",
+        "object": "object" if compat.CYCLES >= 5 else "position",
+        "uv": NOWHERE,
+        "attribute": NOWHERE,
+        "attribute-number": 0.0,
+        "attribute-alpha": 0.0,
+    },
+}
+
 
 def kind_of_socket(kind: str) -> str:
     return "number" if kind in NUMBERS else "vector"
 
 
 class Reader(Builder):
-    """Reads node trees of one owner into one program. `shift`: where Bump nodes want their height ("none", "x", "y"), and its width."""
+    """Reads node trees of one owner into one program. `shift`: where Bump nodes want their height ("none", "x", "y"), and its width.
 
-    def __init__(self) -> None:
+    `kind`: of the owner, material, world or light.
+    """
+
+    def __init__(self, kind: str = "material") -> None:
         super().__init__()
+        self.kind = kind
         self.shift: tuple[str, float] = ("none", 1.0)
         self._outputs: dict[tuple[Any, ...], Value | None] = {}  # None: being read
 
     def place(self, name: str, /, **parameters: Any) -> Value:
-        """An operation that tells where the program runs."""
+        """An operation that tells where the program runs; what is elsewhere than on a surface, as Cycles has it there."""
+        elsewhere = ELSEWHERE.get(self.kind, {}).get(name, name)
+        if not isinstance(elsewhere, str):
+            return elsewhere
+        if elsewhere == "direction":  # which no step along a surface changes
+            return self(elsewhere)
+        name = elsewhere
         direction, width = self.shift
         return (
             self(name, **parameters) if direction == "none" else self(name, shift=direction, width=width, **parameters)

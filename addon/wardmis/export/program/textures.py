@@ -26,7 +26,7 @@ def _image(use: NodeUse, output: Any, p: Reader) -> Value:
     node = use.node
     found = picture(use)
     if found is None:
-        return _missing(output)
+        return _missing(use, output)
     parameters = _texture(use, found, node.extension)
     vector = coordinates(use, p, "uv")
     alpha = "-alpha" if output.name == "Alpha" else ""
@@ -39,7 +39,7 @@ def _image(use: NodeUse, output: Any, p: Reader) -> Value:
 def _environment(use: NodeUse, output: Any, p: Reader) -> Value:
     found = picture(use)
     if found is None:
-        return _missing(output)
+        return _missing(use, output)
     projection = {} if use.node.projection == "EQUIRECTANGULAR" else {"projection": "mirror-ball"}
     alpha = "-alpha" if output.name == "Alpha" else ""
     parameters = _texture(use, found, "REPEAT")
@@ -54,8 +54,11 @@ def _texture(use: NodeUse, found: Picture, extension: str) -> dict[str, Any]:
     return {"texture": index} | ({"unassociate": True} if unassociate else {})
 
 
-def _missing(output: Any) -> Value:
-    return 1.0 if output.name == "Alpha" else MISSING
+UNKNOWN_LIGHT = (0.5, 0.5, 0.5)  # of a sky or a lamp whose image cannot be shown
+
+
+def _missing(use: NodeUse, output: Any) -> Value:
+    return 1.0 if output.name == "Alpha" else MISSING if use.owner.kind == "material" else UNKNOWN_LIGHT
 
 
 NODES = {"TexImage": _image, "TexEnvironment": _environment}
