@@ -70,12 +70,12 @@ TEST(Render, CheckpointsSeeTheFilmAtPowersOfTwoAndDoNotCount) {
     at.push_back(film.samples);
     wall.push_back(time.wall);
     EXPECT_EQ(counts.cameraRays, film.samples * film.pixels.size());
-    std::this_thread::sleep_for(std::chrono::milliseconds(40));
+    std::this_thread::sleep_for(std::chrono::milliseconds(150));
   };
   const FilmBuffer film = render(scene, s, watched, observer);
   EXPECT_EQ(at, (std::vector<uint32_t>{1, 2, 4, 8, 12}));
   EXPECT_TRUE(std::is_sorted(wall.begin(), wall.end()));
-  EXPECT_LT(wall.back() - wall.front(), 0.04 * 4) << "what the observer takes is no render time";
+  EXPECT_LT(wall.back() - wall.front(), 0.15 * 4) << "what the observer takes is no render time";
   EXPECT_TRUE(same(film, expected));
 }
 
@@ -508,7 +508,8 @@ TEST(Render, LeavesOutWhatIsNotNeeded) {
   EXPECT_FALSE(delta.allocated);
   EXPECT_EQ(delta.techniques, maskOf(kLight));
   EXPECT_EQ(delta.counts.rays[kCosine], 0);
-  EXPECT_EQ(passesFor(delta.techniques, delta.techniqueNames).size(), 6);  // one allocation map
+  const std::vector<PassInfo> passes = passesFor(delta.techniques, delta.techniqueNames);
+  EXPECT_EQ(std::count_if(passes.begin(), passes.end(), [](const PassInfo& p) { return p.group == "allocation"; }), 1);
 }
 
 // A pilot never takes all samples; with one sample there is none, and it is said. `auto` has none below 16.
