@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 
 #include "bsdf/bump_shadow.h"
 #include "bsdf/lobe.h"
@@ -102,6 +103,7 @@ class LobeSurface {
   uint8_t rays(size_t slot, bool ahead) const { return ahead ? reflection_[slot] : uint8_t{kSeenByTransmission}; }
   // About the share of light from all around that it sends to the viewer.
   float strength(size_t slot) const { return strength_[slot]; }
+  float strength() const { return std::accumulate(strength_.begin(), strength_.end(), 0.0f); }  // of all
   float diffuseStrength() const { return strength_[kCosine]; }
   Rgb albedo() const {
     Rgb sum = diffuse_;

@@ -22,6 +22,17 @@ struct RenderScene {
 
 namespace detail {
 
+// The probability to go on behind x, by what its surface lets through and what else it sends. That is below 1 wherever
+// there is anything else: what is added to a transparent surface would be lost. Its emission counts as one more lobe of
+// that albedo.
+template <class X>
+float passing(const X& x) {
+  const Rgb through = x.surface.transparent;
+  const float passes = std::min((through.x + through.y + through.z) / 3, 1.0f);
+  const auto sent = [](Rgb c) { return std::min(std::abs(c.x) + std::abs(c.y) + std::abs(c.z), 1.0f); };
+  const float stays = x.surface.strength() + x.surface.holdout + sent(x.emission);
+  return passes > 0 ? passes / (passes + stays) : 0;
+}
 // From where a ray goes on behind x, which it met at t.
 template <class X>
 float behind(const X& x, Vec3f direction, float t) {
@@ -43,20 +54,22 @@ Hit trace(const RenderScene& world, Ray& ray, uint32_t key, Rgb& weight, Along&&
   for (uint32_t passed = 0;; ++passed) {
     const Hit hit = world.accel.intersect(ray);
     along(hit.t, !hit.valid());
-    if constexpr ((N & kNeedsLobes) == 0) return hit;
-    if (!hit.valid() || !detail::mayPass(world, ray, hit)) return hit;
-    const auto x = interact<N, K>(world.scene, world.geometry, ray, hit);
-    const Rgb through = x.surface.transparent;
-    const float q = std::clamp((through.x + through.y + through.z) / 3, 0.0f, 1.0f);
-    if (!(q > 0)) return hit;
-    if (toUnit(combine(key, 0x51ed270bu + passed)) >= q) {
-      weight = weight / (1 - q);
+    if constexpr ((N & kNeedsLobes) == 0) {
       return hit;
+    } else {
+      if (!hit.valid() || !detail::mayPass(world, ray, hit)) return hit;
+      const auto x = interact<N, K>(world.scene, world.geometry, ray, hit);
+      const float q = detail::passing(x);
+      if (!(q > 0)) return hit;
+      if (toUnit(combine(key, 0x51ed270bu + passed)) >= q) {
+        weight = weight / (1 - q);
+        return hit;
+      }
+      weight = weight * x.surface.transparent / q;
+      ray.tMin = detail::behind(x, ray.direction, hit.t);
+      ray.left = x.strand;
+      ray.path = ray.path.passed();
     }
-    weight = weight * through / q;
-    ray.tMin = detail::behind(x, ray.direction, hit.t);
-    ray.left = x.strand;
-    ray.path = ray.path.passed();
   }
 }
 

@@ -163,6 +163,22 @@ TEST(Closures, SheetsLetLightThrough) {
   }
 }
 
+// A sheet that lets all light through and sends some of its own besides, under a white sky: 1 + a + e, the same with
+// few paths as with many.
+TEST(Closures, WhatIsAddedToATransparentSurfaceIsSeen) {
+  for (const float a : {0.0f, 0.02f, 0.3f})
+    for (const float e : {0.0f, 0.05f, 20.0f}) {
+      Scene scene = diffusePlane(8);
+      scene.worlds = {World{}};
+      worldOf(scene).radiance = kWhite;
+      scene.materials[0] = material({closure(ClosureType::kTransparent), closure(ClosureType::kDiffuse, {a, a, a})});
+      scene.materials[0].emission.value = {e, e, e};
+      RenderSettings s = settings();
+      s.spp = 256;
+      EXPECT_NEAR(meanOf(scene, s) / (1 + double(a + e)), 1, 0.02) << a << ' ' << e;
+    }
+}
+
 // Sheets without an index of refraction before a glowing one: each is a transmission bounce, and B of them are
 // followed.
 TEST(Closures, TransmissionHasALimitOfItsOwn) {
