@@ -589,6 +589,9 @@ class Files(unittest.TestCase):
         self.assertIn("from facet to facet", reasons(type="principled", distribution="multi-ggx", version=3)[0])
         self.assertEqual(reasons(type="principled", version=3, clearcoat={"value": 0.0}), ["fog"])
         self.assertIn("clearcoat", reasons(type="principled", version=3, clearcoat={"value": 0.5})[0])
+        beckmann = {"type": "glossy", "distribution": "beckmann", "version": 3, "alphaX": {"value": 0.1}}
+        self.assertIn("by one roughness", reasons(**beckmann, alphaY={"value": 0.2})[0])
+        self.assertEqual(reasons(**beckmann, alphaY={"value": 0.1}), ["fog"])
         self.assertIn("Ashikhmin", reasons(type="glossy", distribution="ashikhmin-shirley")[0])
 
     def test_checkpoints(self):

@@ -14,6 +14,7 @@ EXTENSION = "WARDMIS_scene"
 WARD = "WardMIS shows Ward's reflection, Cycles Beckmann's"
 WALK = "WardMIS shows GGX whose lost energy is added evenly, Cycles before 4.0 light that walks from facet to facet"
 COAT = "WardMIS shows the clearcoat's own light, Cycles before 4.0 draws its directions by another density than it divides by"
+BECKMANN = "WardMIS shows anisotropic Beckmann reflection, of which Cycles before 4.0 draws both axes by one roughness"
 ASHIKHMIN = (
     "WardMIS shows Ashikhmin and Shirley's reflection, of which Cycles' sampling leaves some out at grazing angles"
 )
@@ -50,6 +51,8 @@ def _differences(surface: dict[str, Any]) -> set[str]:
         found |= {WALK} if distribution == "multi-ggx" and closure.get("version") == 3 else set()
         coat = closure.get("clearcoat", {})
         found |= {COAT} if coat.get("value", 0) != 0 else set()
+        one_axis = closure.get("alphaX") == closure.get("alphaY")
+        found |= {BECKMANN} if distribution == "beckmann" and closure.get("version") == 3 and not one_axis else set()
         found |= {ASHIKHMIN} if distribution == "ashikhmin-shirley" else set()
     return found
 

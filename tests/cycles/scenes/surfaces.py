@@ -221,10 +221,13 @@ def gloss():
 
 @scene(bounces=2)
 def anisotropic_gloss():
+    """Cycles 3.4 draws Beckmann's facets by the first axis' roughness for both and divides by the density of both (113 % off in a
+    block); its walk among facets is up to 27 % off the factor, which is not explained. They are left out there."""
+    reflections = ("GGX", "ASHIKHMIN_SHIRLEY") if OLD else REFLECTIONS
     on_balls(
-        *(glossy(d, 0.4, 0.7) for d in REFLECTIONS),
-        *(glossy(d, 0.6, -0.8, 0.15, AMBER) for d in REFLECTIONS),
-        *(glossy(d, 0.3, 0.5, 0.25, SEA) for d in REFLECTIONS),
+        *(glossy(d, 0.4, 0.7) for d in reflections),
+        *(glossy(d, 0.6, -0.8, 0.15, AMBER) for d in reflections),
+        *(glossy(d, 0.3, 0.5, 0.25, SEA) for d in reflections),
     )
 
 
