@@ -298,7 +298,7 @@ class Content(GlbTest):
             images=[ImageData("sky", "linear", b"v/1\x01", "image/x-exr")], textures=[TextureData(0)], notes=["a note"]
         )
         turned = np.array([(0.0, -1, 0), (1, 0, 0), (0, 0, 1)])
-        data.worlds = [WorldData((2, 2, 2), 0, turned)]
+        data.worlds = [WorldData((2, 2, 2), 0, matrix=turned)]
         data.film = FilmData((64, 32), (8, 4, 16, 12), "gaussian", 2.0, 0.5, True)
         extension = self.write(data)[0]["extensions"]["WARDMIS_scene"]
         self.assertEqual(

@@ -124,7 +124,8 @@ class Files(unittest.TestCase):
     def test_spheres_of_the_furnace_see_the_sky_alone(self):
         scene = self.open("furnace")
         self.assertEqual([(w.radiance, w.texture) for w in scene.worlds], [((1, 1, 1), None)])
-        self.assertEqual({i.hidden_from for i in scene.instances}, {frozenset({"diffuse", "glossy", "shadow"})})
+        hidden = frozenset({"diffuse", "glossy", "transmission", "shadow"})
+        self.assertEqual({i.hidden_from for i in scene.instances}, {hidden})
         half, ward = self.material(scene, "Half"), self.material(scene, "Ward")
         self.assertEqual((half.diffuse.value, half.specular.value), ((0.5, 0.5, 0.5), (0, 0, 0)))
         self.assertEqual(ward.variant, "ward-gmd")

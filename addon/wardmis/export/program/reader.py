@@ -10,6 +10,7 @@ from typing import Any
 from mathutils import Matrix
 
 from ... import compat
+from .. import converters  # noqa: F401  fills what read() and folding know
 from ..neutral import NEUTRAL
 from ..read import own_value
 from ..tree import NodeUse, Source
