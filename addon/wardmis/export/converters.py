@@ -188,9 +188,8 @@ WITHOUT_IES = 100.0  # what Cycles has instead of a file
 MOST_OF_IES = 1 << 20  # bytes, within which the first keyword stands
 
 
-def _ies(use: NodeUse, _output: Any) -> Value | None:
-    """None: what a file says depends on the direction."""
-    node = use.node
+def has_ies_file(node: Any) -> bool:
+    """Whether an IES node has what Cycles reads as a file."""
     if node.mode == "INTERNAL":
         text = "" if node.ies is None else node.ies.as_string()
     else:
@@ -199,7 +198,12 @@ def _ies(use: NodeUse, _output: Any) -> Value | None:
                 text = file.read(MOST_OF_IES)
         except OSError:
             text = ""
-    if "\nTILT=" in text:
+    return "\nTILT=" in text
+
+
+def _ies(use: NodeUse, _output: Any) -> Value | None:
+    """None: what a file says depends on the direction."""
+    if has_ies_file(use.node):
         return None
     use.note("has no IES file; its strength counts a hundredfold, as in Cycles")
     return calculator(use).multiply(read(use, "Strength"), constant(WITHOUT_IES))
