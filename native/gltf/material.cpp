@@ -19,6 +19,8 @@ constexpr std::pair<std::string_view, WardVariant> kVariants[] = {
     {"ward", WardVariant::kWard}, {"ward-dur", WardVariant::kWardDur}, {"ward-gmd", WardVariant::kWardGmd}};
 constexpr std::pair<std::string_view, ColorSpace> kColorSpaces[] = {{"sRGB", ColorSpace::kSrgb},
                                                                     {"linear", ColorSpace::kLinear}};
+constexpr std::pair<std::string_view, Alpha> kAlphas[] = {
+    {"kept", Alpha::kKept}, {"multiplies", Alpha::kMultiplies}, {"ignored", Alpha::kIgnored}};
 constexpr std::pair<std::string_view, Filter> kFilters[] = {
     {"linear", Filter::kLinear}, {"nearest", Filter::kNearest}, {"cubic", Filter::kCubic}};
 constexpr std::pair<std::string_view, Wrap> kExtensionWraps[] = {
@@ -379,7 +381,7 @@ int Materials::image(size_t i, bool isColor) {
   if (const auto extension = json.extension(kExtension)) {
     if (const auto given = extension->find("colorSpace")) encoding.space = given->choice(kColorSpaces);
     encoding.filterEncoded = extension->booleanOr("filterEncoded", false);
-    encoding.alphaMultiplies = extension->booleanOr("alphaMultiplies", false);
+    if (const auto given = extension->find("alpha")) encoding.alpha = given->choice(kAlphas);
   }
   const auto [entry, isNew] = imageOf_.try_emplace({i, encoding}, static_cast<int>(pending_.size()));
   if (isNew) pending_.push_back({json, encoding, user_});

@@ -23,6 +23,12 @@ void multiplyByAlpha(Image& im) {
     for (size_t c = 0; c + 1 < step; c++) im.floats[i + c] *= im.floats[i + step - 1];
 }
 
+void ignoreAlpha(Image& im) {
+  const size_t step = im.channels;
+  for (size_t i = step - 1; i < im.bytes.size(); i += step) im.bytes[i] = UINT8_MAX;
+  for (size_t i = step - 1; i < im.floats.size(); i += step) im.floats[i] = 1;
+}
+
 // What no renderer can use becomes 0; colours of float images become linear, unless they are filtered before that.
 DecodedImage finished(Image image, Encoding encoding) {
   DecodedImage out{std::move(image), 0, {}};
@@ -32,7 +38,10 @@ DecodedImage finished(Image image, Encoding encoding) {
     out.mended += !right;
     v = right ? v : 0;
   }
-  if (encoding.alphaMultiplies && im.channels % 2 == 0) multiplyByAlpha(im);
+  if (im.channels % 2 == 0) {
+    if (encoding.alpha == Alpha::kMultiplies) multiplyByAlpha(im);
+    if (encoding.alpha == Alpha::kIgnored) ignoreAlpha(im);
+  }
   const bool srgb = encoding.space != ColorSpace::kLinear;
   im.filterEncoded = srgb && encoding.filterEncoded;
   im.srgb = srgb && (im.floats.empty() || im.filterEncoded);

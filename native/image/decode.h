@@ -17,11 +17,15 @@ namespace wardmis {
 // How the numbers of an image stand for light. kAuto: sRGB for integers, linear for floats.
 enum class ColorSpace : uint8_t { kAuto, kSrgb, kLinear };
 
+// What becomes of alpha: it is an output of its own, the colours are multiplied by it as they are in the file, or it
+// is 1.
+enum class Alpha : uint8_t { kKept, kMultiplies, kIgnored };
+
 // How an image's numbers are to be taken.
 struct Encoding {
   ColorSpace space = ColorSpace::kAuto;
-  bool filterEncoded = false;    // Image::filterEncoded
-  bool alphaMultiplies = false;  // colours are to be multiplied by alpha, as they are in the file
+  bool filterEncoded = false;  // Image::filterEncoded
+  Alpha alpha = Alpha::kKept;
   // clang-tidy 14 takes what the compiler makes of <=> for a 0 that should be nullptr
   auto operator<=>(const Encoding&) const = default;  // NOLINT(modernize-use-nullptr)
 };

@@ -133,8 +133,14 @@ class Background(PanelTest):
         ):
             self.assertEqual(bpy.ops.wardmis.compare(), {"FINISHED"})
             failed = self.wait()
+        self.assertIn("WardMIS' half of the time, 0.001 s, is too little", failed.failure)
         self.assertIn("give at least 6 s in all, or fewer seeds, or compare without", failed.failure)
+        self.assertNotIn("--", failed.failure)
         self.assertFalse(failed.folder.exists())
+        self.settings.seconds = 5  # the panel has learnt from it
+        self.assertIn("Too little here: at least 6 s", panels.estimate_text(self.scene))
+        self.settings.seconds = 7
+        self.assertNotIn("Too little", panels.estimate_text(self.scene))
 
     def test_cancel_ends_the_other_blender(self):
         self.settings.use_cycles = True
@@ -571,7 +577,10 @@ class Times(PanelTest):
     def test_defaults_are_two_minutes_at_half_the_resolution(self):
         scene = bpy.data.scenes.new("Fresh")
         self.addCleanup(bpy.data.scenes.remove, scene)
-        self.assertEqual(panels.estimate_text(scene), "About 2 min at 960 × 540, 1 min of it for Cycles")
+        self.assertEqual(
+            panels.estimate_text(scene),
+            "About 2 min at 960 × 540, 1 min of it for Cycles. Whether that is enough is known after a render (F12)",
+        )
 
     def test_samples_take_what_a_render_took(self):
         self.settings.allocations = {"equal"}

@@ -235,7 +235,7 @@ class Content(GlbTest):
             ColorInput((3, 3, 0)),
         )
         images = [
-            ImageData("photo", encoded=b"PNG..", mime_type="image/png", filter_encoded=True, alpha_multiplies=True),
+            ImageData("photo", encoded=b"PNG..", mime_type="image/png", filter_encoded=True, alpha="multiplies"),
             ImageData("data", "linear", pixels=np.zeros((2, 3, 4), np.float32)),
         ]
         textures = [TextureData(0), TextureData(1, "mirror", "nearest"), TextureData(0, "clip", "cubic")]
@@ -255,7 +255,7 @@ class Content(GlbTest):
         self.assertEqual(document["images"][1]["mimeType"], "application/x-wardmis-pixels")
         self.assertEqual(
             document["images"][0]["extensions"]["WARDMIS_scene"],
-            {"colorSpace": "sRGB", "filterEncoded": True, "alphaMultiplies": True},
+            {"colorSpace": "sRGB", "filterEncoded": True, "alpha": "multiplies"},
         )
         self.assertEqual(document["textures"][2]["extensions"]["WARDMIS_scene"], {"filter": "cubic", "wrap": "clip"})
         self.assertNotIn("extensions", document["textures"][1])

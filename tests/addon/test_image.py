@@ -182,7 +182,8 @@ class Images(unittest.TestCase):
         for mode, color_space, alphas in (
             ("STRAIGHT", "sRGB", ("multiplied", "restored")),
             ("CHANNEL_PACKED", "sRGB", ("kept", "kept")),
-            ("NONE", "sRGB", ("kept", "kept")),
+            ("NONE", "sRGB", ("ignored", "ignored")),
+            ("NONE", "Non-Color", ("ignored", "ignored")),
             ("STRAIGHT", "Non-Color", ("kept", "kept")),
         ):
             image.alpha_mode, image.colorspace_settings.name = mode, color_space
@@ -190,7 +191,7 @@ class Images(unittest.TestCase):
             self.assertEqual(found, alphas, (mode, color_space))
         image.alpha_mode, image.colorspace_settings.name = "STRAIGHT", "sRGB"
         multiplied = Picture(image, "multiplied")
-        self.assertTrue(multiplied.export().alpha_multiplies)
+        self.assertEqual(multiplied.export().alpha, "multiplies")
         stored = np.array([0, 255, 204]) * 128 // 255 / 255  # as they are in the file
         np.testing.assert_allclose(
             multiplied.texels()[0, 1, :3], [((s + 0.055) / 1.055) ** 2.4 if s else 0 for s in stored], rtol=1e-5

@@ -68,11 +68,20 @@ def chosen_spp(folder: Path) -> int:
         ) from error
 
 
+ENOUGH = re.compile(r"give at least (\d+) s")
+
+
+def enough_of(message: str) -> float | None:
+    """The seconds that a refusal of a budget asks for."""
+    found = ENOUGH.search(message)
+    return None if found is None else float(found[1])
+
+
 def explain_half(message: str) -> str:
     """A refusal of half a budget names the half, where the user has given the whole."""
     if "--budget-seconds" not in message or "give at least" not in message:
         return message
-    doubled = re.sub(r"give at least (\d+) s", lambda found: f"give at least {2 * int(found[1])} s in all", message)
+    doubled = ENOUGH.sub(lambda found: f"give at least {2 * int(found[1])} s in all", message)
     return f"{doubled}, or compare without Cycles, which has half of the budget"
 
 

@@ -29,7 +29,7 @@ class Speeds:
 class Estimate:
     own: float  # seconds
     cycles: float
-    guessed: bool  # from no render of the scene
+    guessed: bool  # from no render of the scene: of a budget, whether it suffices is not known
     needed: float = 0.0  # seconds that a budget has to have at least, as far as is known
 
     @property
@@ -41,7 +41,8 @@ def estimate(study: Study, pixels: int, cycles_seeds: int | None, speeds: Speeds
     """Of `study` at so many `pixels`; `cycles_seeds` is none without Cycles."""
     if study.budget_seconds is not None:
         half = study.budget_seconds / 2 if cycles_seeds is not None else 0.0
-        return Estimate(study.budget_seconds - half, half, False, _needed(study, pixels, cycles_seeds, speeds))
+        unknown = speeds.own is None
+        return Estimate(study.budget_seconds - half, half, unknown, _needed(study, pixels, cycles_seeds, speeds))
     guess = GUESS * threads
     samples = study.max_spp * (len(study.configurations) * study.seeds + REFERENCE_FACTOR)
     own = pixels * samples / (speeds.own or guess)

@@ -6,7 +6,9 @@ from __future__ import annotations
 import functools
 import math
 import os
+import re
 import types
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +22,7 @@ from ..process import RendererError
 from ..properties import ALLOCATIONS
 from ..reporting import reported
 from . import child, editors, images, job, plot, properties
-from .converge import OWN, Outcome, Study, arguments, explain_half
+from .converge import OWN, Outcome, Study, arguments, enough_of, explain_half
 from .cycles import require_cycles
 from .estimate import Estimate, Speeds, estimate
 from .folders import folder_of, home, is_unfinished
@@ -62,15 +64,33 @@ def size_of(scene: Any) -> tuple[int, int]:
 
 def estimate_of(scene: Any) -> Estimate:
     """How long what the panel says takes."""
-    settings = scene.wardmis_comparison
-    width, height = size_of(scene)
-    render, share = scene.render, 1.0
-    if render.use_border:
-        share = (render.border_max_x - render.border_min_x) * (render.border_max_y - render.border_min_y)
     study = study_of(scene)
+    pixels, cycles_seeds = _pixels(scene), _cycles_seeds(scene)
     threads = study.threads or os.cpu_count() or 1
-    cycles_seeds = settings.cycles_seeds if settings.use_cycles else None
-    return estimate(study, max(1, round(width * height * share)), cycles_seeds, _speeds(study.title), threads)
+    found = estimate(study, pixels, cycles_seeds, _speeds(study.title), threads)
+    found.needed = max(found.needed, _refusals.get(_but_for_time(scene), 0.0))
+    return found
+
+
+def _pixels(scene: Any) -> int:
+    render, (width, height) = scene.render, size_of(scene)
+    if not render.use_border:
+        return width * height
+    share = (render.border_max_x - render.border_min_x) * (render.border_max_y - render.border_min_y)
+    return max(1, round(width * height * share))
+
+
+def _cycles_seeds(scene: Any) -> int | None:
+    settings = scene.wardmis_comparison
+    return int(settings.cycles_seeds) if settings.use_cycles else None
+
+
+_refusals: dict[str, float] = {}  # seconds that comparisons need which were refused for want of time
+
+
+def _but_for_time(scene: Any) -> str:
+    """Equal for comparisons that differ in nothing else."""
+    return repr((replace(study_of(scene), budget_seconds=None), _pixels(scene), _cycles_seeds(scene)))
 
 
 def unfinished(scene: Any) -> bool:
@@ -133,6 +153,7 @@ class _Asked:
         self.home = home(scene)
         self.percentage = percentage_of(scene)
         self.estimate = estimate_of(scene)
+        self.but_for_time = _but_for_time(scene)
         self.staging = staging
         self.needs_copy = self.settings.use_cycles or second_blender.wanted()
         self._cycles = functools.partial(
@@ -167,12 +188,22 @@ class _Asked:
         renders = folder / CYCLES_FOLDER
         outcome.manifest = renders / "manifest.json"
         command = self._cycles(renders, outcome.scene, plan)
-        stages.append(job.Stage("Cycles", command, seconds=self.estimate.cycles))
+        stages.append(job.Stage("Cycles", command, self._refused, self.estimate.cycles))
         return [*stages, self._own(study, outcome, seconds)]
 
     def _own(self, study: Study, outcome: Outcome, seconds: float) -> job.Stage:
         command = [str(self.binary), *arguments(study, self.render_settings, outcome)]
-        return job.Stage("the renderer", command, explain_half if self.settings.use_cycles else str, seconds)
+        return job.Stage("the renderer", command, self._refused, seconds)
+
+    def _refused(self, message: str) -> str:
+        """A failure in the panel's words; of what a comparison needs, the estimate knows from now on."""
+        message = explain_half(message) if self.settings.use_cycles else message
+        enough = enough_of(message)
+        if enough is not None:
+            _refusals[self.but_for_time] = enough
+        whose = "WardMIS' half of the time" if self.settings.use_cycles else "the time"
+        message = re.sub(r"--budget-seconds ([\d.e+]+):", rf"{whose}, \1 s, is too little:", message)
+        return message.replace("--seeds", "seeds").replace("--resolution", "resolution")
 
 
 def _as_it_is(group: Any) -> Any:

@@ -72,7 +72,11 @@ def estimate_text(scene: Any) -> str:
         return (
             f"{text}. Too little here: at least {duration(found.needed)}, or a lower resolution, or fewer allocations"
         )
-    return f"{text}. A guess: after a render (F12) it is better known" if found.guessed else text
+    if not found.guessed:
+        return text
+    if scene.wardmis_comparison.stop_by == "seconds":
+        return f"{text}. Whether that is enough is known after a render (F12)"
+    return f"{text}. A guess: after a render (F12) it is better known"
 
 
 def draw_progress(layout: Any, scene: Any) -> None:

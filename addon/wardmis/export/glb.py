@@ -163,8 +163,8 @@ class _Encoder:
         extension: dict[str, Any] = {"colorSpace": image.color_space}
         if image.filter_encoded:
             extension["filterEncoded"] = True
-        if image.alpha_multiplies:
-            extension["alphaMultiplies"] = True
+        if image.alpha != "kept":
+            extension["alpha"] = image.alpha
         if image.encoded is not None:
             return {
                 "name": image.name,

@@ -44,7 +44,8 @@ class BakedImage:
 class Picture:
     """What an image node shows of an image, as Cycles does: which picture of a sequence, and what alpha does to the colours.
 
-    `alpha`: the colours are "kept" as they are stored, "multiplied" by it, "divided" by it after they are filtered, or both, "restored".
+    `alpha`: the colours are "kept" as they are stored, "multiplied" by it, "divided" by it after they are filtered, or both, "restored";
+    or it is "ignored", and 1.
     """
 
     image: Any
@@ -110,14 +111,13 @@ class Picture:
         mime_type = self.mime_type
         readable = self.image.colorspace_settings.name in COLOR_SPACES and self.alpha != "divided"
         if mime_type and readable:
-            multiplied = self.alpha == "multiplied"
             return ImageData(
                 self.name,
                 self._space,
                 encoded=self._file(),
                 mime_type=mime_type,
                 filter_encoded=self.is_encoded,
-                alpha_multiplies=multiplied,
+                alpha={"multiplied": "multiplies", "ignored": "ignored"}.get(self.alpha, "kept"),
             )
         space = "sRGB" if self.is_encoded else "linear"
         pixels = self._stored("kept" if self.alpha == "restored" else self.alpha)
@@ -216,6 +216,8 @@ class Picture:
             pixels = np.concatenate([encode_srgb(pixels[..., :3]), pixels[..., 3:]], axis=-1)
         if image.channels < 4 or alpha == "kept":
             return pixels
+        if alpha == "ignored":
+            return pixels[..., :3]
         if alpha in {"multiplied", "restored"}:
             if pixels.dtype == np.uint8:
                 pixels[..., :3] = pixels[..., :3].astype(np.uint16) * pixels[..., 3:] // 255
@@ -231,7 +233,7 @@ def picture_of(image: Any, shows_alpha: bool, user: Any, scene_frame: int) -> Pi
 
     Cycles multiplies colours by alpha where the file has not done so, and divides them again where the alpha is used.
     """
-    alpha = "kept"
+    alpha = "ignored" if image.alpha_mode == "NONE" else "kept"
     space = image.colorspace_settings.name
     if image.alpha_mode in {"STRAIGHT", "PREMUL"} and space not in DATA:
         integers = not image.is_float or Picture(image).mime_type == "image/png"

@@ -43,7 +43,7 @@ class ImageData:
     mime_type: str = ""  # image/png, image/jpeg, image/x-exr
     pixels: np.ndarray | None = None  # (height, width, channels 1..4), uint8 or float32, rows from the bottom
     filter_encoded: bool = False  # sRGB values are filtered as they are, and decoded after that
-    alpha_multiplies: bool = False  # the colours are to be multiplied by alpha as they are
+    alpha: str = "kept"  # or "multiplies" the colours as they are, or "ignored": 1
 
 
 @dataclass

@@ -20,7 +20,7 @@ UNKNOWN_LIGHT = 0.5  # of a sky or a lamp whose image cannot be shown
 
 def image_texture(use: NodeUse, output: Any) -> Value:
     node = use.node
-    found = picture(use)
+    found = picture(use, use.owner.kind != "material")
     if found is None:
         return _missing(use)
     use.note(f"is mapped by UVs, which a {use.owner.kind} has not; its mean is used everywhere")
@@ -29,7 +29,7 @@ def image_texture(use: NodeUse, output: Any) -> Value:
 
 def environment_texture(use: NodeUse, output: Any) -> Value:
     node = use.node
-    found = picture(use)
+    found = picture(use, use.owner.kind != "material")
     if found is None:
         return _missing(use)
     turn = _directions(use) if use.owner.kind == "world" else np.eye(3)
@@ -48,10 +48,10 @@ def _shown(lookup: Lookup, output: Any) -> Value:
     return Value(np.ones(3), (lookup,))
 
 
-def picture(use: NodeUse) -> Picture | None:
-    """None, and a note, where there is nothing to show."""
+def picture(use: NodeUse, is_light: bool) -> Picture | None:
+    """None, and a note, where there is nothing to show. `is_light`: it colours light."""
     node = use.node
-    instead = "magenta is" if use.owner.kind == "material" else "grey light is"
+    instead = "grey light is" if is_light else "magenta is"
     if node.image is None:
         use.note(f"has no image; {instead} shown instead")
         return None

@@ -210,6 +210,22 @@ def alpha_exr_used():
 
 
 @scene
+def alpha_none_used():
+    """It is 1 then; beyond the image, which is clipped, it is 0."""
+    face_on()
+    picture = saved_image("none-used", with_alpha())
+    picture.alpha_mode = "NONE"
+
+    def build(tree):
+        coordinates = add(tree, "Mapping", Vector=add(tree, "TexCoord").outputs["UV"], Scale=(1.5, 1, 1))
+        node = texture(tree, picture, {"interpolation": "Closest", "extension": "CLIP"})
+        tree.links.new(coordinates.outputs[0], node.inputs[0])
+        return mixed(tree, node.outputs["Alpha"], (0.2, 0.2, 0.2, 1), node.outputs["Color"])
+
+    sheet(painted(build))
+
+
+@scene
 def alpha_alone():
     alpha("STRAIGHT", output="Alpha")
 

@@ -331,7 +331,8 @@ TEST(Glb, TexturesAsBlenderFiltersThem) {
   rawTexture<uint8_t>(b, 1, 1, 4, {100, 200, 255, 51});
   json& image = b.root["images"][0]["extensions"]["WARDMIS_scene"];
   image["colorSpace"] = "sRGB";
-  image["filterEncoded"] = image["alphaMultiplies"] = true;
+  image["filterEncoded"] = true;
+  image["alpha"] = "multiplies";
   b.root["textures"][0]["extensions"]["WARDMIS_scene"] = {{"filter", "cubic"}, {"wrap", "clip"}};
   const Scene s = read(b);
   EXPECT_EQ(s.textures.at(0).filter, Filter::kCubic);
@@ -339,6 +340,8 @@ TEST(Glb, TexturesAsBlenderFiltersThem) {
   EXPECT_EQ(s.textures.at(0).wrapV, Wrap::kClip);
   EXPECT_TRUE(s.images.at(0).filterEncoded);
   EXPECT_EQ(s.images.at(0).bytes, (std::vector<uint8_t>{20, 40, 51, 51}));  // a fifth
+  image["alpha"] = "ignored";
+  EXPECT_EQ(read(b).images.at(0).bytes, (std::vector<uint8_t>{100, 200, 255, 255}));
 }
 
 TEST(Glb, LoadsImagesFromTheFileAndItsFolder) {

@@ -55,6 +55,7 @@ class Reader(Builder):
     def __init__(self, kind: str = "material") -> None:
         super().__init__()
         self.kind = kind
+        self.is_light = kind != "material"  # what is read colours light: a lost image is grey then, not magenta
         self.shift: tuple[str, float] = ("none", 1.0)
         self._outputs: dict[tuple[Any, ...], Value | None] = {}  # None: being read
 
@@ -81,6 +82,14 @@ class Reader(Builder):
         ):
             return implicit()
         return self.converted(self._first(use, source, key), source.kinds)
+
+    def read_light(self, use: NodeUse, key: str | int) -> Value:
+        """The same of an input for light that is given off."""
+        before, self.is_light = self.is_light, True
+        try:
+            return self.read(use, key)
+        finally:
+            self.is_light = before
 
     def optional(self, use: NodeUse, name: str, default: float = 0.0) -> Value:
         """A number that only some settings or versions of the node have."""
@@ -140,7 +149,13 @@ class Reader(Builder):
         return self._given(source.use, source.socket, use, key)
 
     def _given(self, origin: NodeUse, output: Any, use: NodeUse, key: str | int) -> Value:
-        place = (origin.node.as_pointer(), *(g.as_pointer() for g in origin.groups), output.identifier, self.shift)
+        place = (
+            origin.node.as_pointer(),
+            *(g.as_pointer() for g in origin.groups),
+            output.identifier,
+            self.shift,
+            self.is_light,
+        )
         if place in self._outputs:
             known = self._outputs[place]
             if known is None:

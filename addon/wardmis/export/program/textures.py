@@ -19,14 +19,15 @@ ALPHA = {
     "multiplied": ("multiplied", False),
     "divided": ("kept", True),
     "restored": ("multiplied", True),
+    "ignored": ("ignored", False),
 }
 
 
 def _image(use: NodeUse, output: Any, p: Reader) -> Value:
     node = use.node
-    found = picture(use)
+    found = picture(use, p.is_light)
     if found is None:
-        return _missing(use, output)
+        return _missing(output, p.is_light)
     parameters = _texture(use, found, node.extension)
     vector = coordinates(use, p, "uv")
     alpha = "-alpha" if output.name == "Alpha" else ""
@@ -37,9 +38,9 @@ def _image(use: NodeUse, output: Any, p: Reader) -> Value:
 
 
 def _environment(use: NodeUse, output: Any, p: Reader) -> Value:
-    found = picture(use)
+    found = picture(use, p.is_light)
     if found is None:
-        return _missing(use, output)
+        return _missing(output, p.is_light)
     projection = {} if use.node.projection == "EQUIRECTANGULAR" else {"projection": "mirror-ball"}
     alpha = "-alpha" if output.name == "Alpha" else ""
     parameters = _texture(use, found, "REPEAT")
@@ -54,11 +55,11 @@ def _texture(use: NodeUse, found: Picture, extension: str) -> dict[str, Any]:
     return {"texture": index} | ({"unassociate": True} if unassociate else {})
 
 
-UNKNOWN_LIGHT = (0.5, 0.5, 0.5)  # of a sky or a lamp whose image cannot be shown
+UNKNOWN_LIGHT = (0.5, 0.5, 0.5)  # whose image cannot be shown
 
 
-def _missing(use: NodeUse, output: Any) -> Value:
-    return 1.0 if output.name == "Alpha" else MISSING if use.owner.kind == "material" else UNKNOWN_LIGHT
+def _missing(output: Any, is_light: bool) -> Value:
+    return 1.0 if output.name == "Alpha" else UNKNOWN_LIGHT if is_light else MISSING
 
 
 NODES = {"TexImage": _image, "TexEnvironment": _environment}
