@@ -23,7 +23,6 @@ from stage import SCENES, Scene  # noqa: E402
 from wardmis import compat  # noqa: E402
 
 SEEDS = 6
-SAMPLES = 64  # of each seed
 # where Cycles' sequences go on as well distributed as they begin: it puts the very first sample into the middle of the pixel
 LATER_SAMPLES = 8192
 
@@ -42,9 +41,9 @@ def set_up(entry: Scene) -> None:
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = cycles.light_sampling_threshold = cycles.blur_glossy = 0
     cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = entry.bounces
     cycles.sampling_pattern = "SOBOL" if bpy.app.version < (4, 0) else "TABULATED_SOBOL"
-    wardmis.samples = SAMPLES
+    wardmis.samples = entry.samples
     wardmis.integrator, wardmis.max_depth = "path" if entry.bounces else "direct", entry.bounces + 1
-    for owner, name, value in compat.cycles_samples(cycles, LATER_SAMPLES, SAMPLES):
+    for owner, name, value in compat.cycles_samples(cycles, LATER_SAMPLES, entry.samples):
         setattr(owner, name, value)
 
 

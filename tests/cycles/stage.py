@@ -34,6 +34,7 @@ class Scene:
     why: str
     since: tuple[int, int]  # the first Blender that can make it
     without: tuple[int, int] | None  # one that cannot
+    samples: int  # per pixel, of each seed
 
 
 SCENES: dict[str, Scene] = {}
@@ -47,14 +48,17 @@ def scene(
     why: str = "",
     since: tuple[int, int] = (3, 4),
     without: tuple[int, int] | None = None,
+    samples: int = 64,
 ) -> Any:
     """Enters a function that builds into an empty Blender scene; it is named after it and its file. `bounces` are Cycles'; 0: direct light."""
     if function is None:
-        return lambda f: scene(f, bounces=bounces, within=within, why=why, since=since, without=without)
+        return lambda f: scene(
+            f, bounces=bounces, within=within, why=why, since=since, without=without, samples=samples
+        )
     name = f"{function.__module__.rpartition('.')[2]}-{function.__name__}"
     assert name not in SCENES, f"two scenes are called {name}"
     assert within <= TOLERANCE or why, f"{name} may deviate by {within}: why?"
-    SCENES[name] = Scene(name, function, bounces, within, why, since, without)
+    SCENES[name] = Scene(name, function, bounces, within, why, since, without, samples)
     return function
 
 
