@@ -445,3 +445,50 @@ def computed_by_light_path():
         return shader
 
     by_light_path("Is Camera Ray", checker(1.7), checker(5.0))
+
+
+# ---- models of the sky ---------------------------------------------------------------------------------------------
+
+OLD, NEW = (
+    ("PREETHAM", "HOSEK_WILKIE", "NISHITA"),
+    ("PREETHAM", "HOSEK_WILKIE", "SINGLE_SCATTERING", "MULTIPLE_SCATTERING"),
+)
+
+
+def model_of_sky(index, strength, build=shiny_things, **settings):
+    """The model of this Blender that has the number, seen by the camera and in a mirror."""
+    build()
+    tree = sky((1, 1, 1), strength)
+    models = OLD if bpy.app.version < (5, 0) else NEW
+    node = add(tree, "TexSky", {"sky_type": models[min(index, len(models) - 1)]})
+    for name, value in settings.items():
+        setattr(node, name, value)
+    tree.links.new(node.outputs[0], tree.nodes["Background"].inputs["Color"])
+    bpy.context.scene.camera.rotation_euler = 1.4, 0, 0.05
+    bpy.context.scene.camera.data.lens = 22
+
+
+@scene
+def preetham():
+    model_of_sky(0, 0.5, sun_direction=(0.5, 0.4, 0.6), turbidity=4.0)
+
+
+@scene
+def hosek_wilkie():
+    model_of_sky(1, 2.0, sun_direction=(-0.5, 0.4, 0.4), turbidity=3.0, ground_albedo=0.5)
+
+
+@scene
+def atmosphere():
+    model_of_sky(2, 0.2, sun_disc=False, sun_elevation=0.3, sun_rotation=0.8, altitude=500.0)
+
+
+@scene
+def atmosphere_with_a_sun():
+    """Without a mirror, where the sun would be noise."""
+    model_of_sky(2, 0.1, things, sun_elevation=0.7, sun_rotation=2.5, sun_size=0.03, air_density=1.5)
+
+
+@scene(since=(5, 0))
+def scattered_often():
+    model_of_sky(3, 0.1, things, sun_elevation=0.2, sun_rotation=2.5, ozone_density=2.0)

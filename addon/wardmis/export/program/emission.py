@@ -11,6 +11,7 @@ from ..tree import NodeUse, Owner
 from .builder import Result, Value
 from .closures import Shading
 from .reader import Reader
+from .sky import linear
 from .surface import MOST_OPERATIONS, Writer
 
 
@@ -62,26 +63,10 @@ def image_of_directions(p: Reader, value: Value) -> tuple[int, str, np.ndarray] 
     parameters = dict(operation.parameters)
     if parameters.get("unassociate"):
         return None
-    matrix = _linear(p, operation.arguments[0])
+    matrix = linear(p, operation.arguments[0])
     if matrix is None or not _has_inverse(matrix):
         return None
     return parameters["texture"], parameters.get("projection", "equirectangular"), matrix
-
-
-def _linear(p: Reader, vector: Value) -> np.ndarray | None:
-    """The matrix, (3, 3), by which the vector looks where the direction does, if there is one. Its length means nothing."""
-    if not isinstance(vector, Result):
-        return None
-    operation = p.operations[vector.index]
-    if operation.name == "direction":
-        return np.eye(3)
-    if operation.name not in {"mapping", "vector-normalize"}:
-        return None
-    before = _linear(p, operation.arguments[0])
-    if before is None or operation.name == "vector-normalize":
-        return before
-    matrix = np.array(dict(operation.parameters)["matrix"]).reshape(3, 4)
-    return None if matrix[:, 3].any() else matrix[:, :3] @ before
 
 
 def _has_inverse(matrix: np.ndarray) -> bool:

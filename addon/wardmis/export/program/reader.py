@@ -56,6 +56,9 @@ class Reader(Builder):
         super().__init__()
         self.kind = kind
         self.is_light = kind != "material"  # what is read colours light: a lost image is grey then, not magenta
+        self.discs = True  # whether skies show the discs of their suns
+        # of the suns shown: direction in the world, None if that is not fixed, and angle
+        self.suns: list[tuple[Any, float]] = []
         self.shift: tuple[str, float] = ("none", 1.0)
         self._outputs: dict[tuple[Any, ...], Value | None] = {}  # None: being read
 
@@ -155,6 +158,7 @@ class Reader(Builder):
             output.identifier,
             self.shift,
             self.is_light,
+            self.discs,
         )
         if place in self._outputs:
             known = self._outputs[place]
