@@ -160,7 +160,7 @@ class _Render:
         return rendering.stopping() or self.engine.test_break()
 
     def _export(self, path: Path) -> None:
-        self._show_text("Exporting the scene")
+        self._show_export("")
         for name in not_available(self.layer):
             self._warn(f"view layer '{self.layer.name}': there is no pass {name}; it is left out")
         for note in self._exported(path):
@@ -169,7 +169,12 @@ class _Render:
     def _exported(self, path: Path) -> list[str]:
         """Writes the scene; returns what there is to tell."""
         engine = self.engine
-        return export_depsgraph(self.depsgraph, path, engine.camera_override, self._stopped, engine.frame_set)
+        return export_depsgraph(
+            self.depsgraph, path, engine.camera_override, self._stopped, engine.frame_set, self._show_export
+        )
+
+    def _show_export(self, doing: str) -> None:
+        self._show_text(f"Exporting the scene: {doing}" if doing else "Exporting the scene")
 
     def _check_room_for_output(self, size: int) -> None:
         """Raises ExportError where Blender is about to save the image to a disk without room for `size` bytes.

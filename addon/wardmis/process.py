@@ -94,8 +94,10 @@ def version(path: Path) -> str:
 class Renderer:
     """A running renderer. Leaving the `with` block ends it in any case."""
 
-    def __init__(self, command: list[str], name: str = "the renderer") -> None:
-        """`name` is what messages call it."""
+    def __init__(
+        self, command: list[str], name: str = "the renderer", environment: dict[str, str] | None = None
+    ) -> None:
+        """`name` is what messages call it; `environment` its variables, by default Blender's own."""
         self.path = command[0]
         self._name = name
         self._file = _identity(self.path)
@@ -105,7 +107,12 @@ class Renderer:
         try:
             # its own session: a Ctrl-C on the terminal is Blender's, which then stops the renderer itself
             self._process = subprocess.Popen(
-                command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True
+                command,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                start_new_session=True,
+                env=environment,
             )
         except OSError as error:
             raise RendererError(f"{name} {command[0]} cannot be run: {error.strerror or error}") from error

@@ -6,14 +6,13 @@ from __future__ import annotations
 import itertools
 import math
 import tempfile
-import unittest.mock
 
 import bpy
 import numpy as np
 from mathutils import Vector
 from support import SceneTest
 from wardmis import compat
-from wardmis.export import ExportError, measured_sky
+from wardmis.export import ExportError
 from wardmis.export.camera import full_resolution, view_plane
 from wardmis.export.value import solid_angles_of
 
@@ -589,30 +588,6 @@ class World(SceneTest):
         scene = self.gather()
         self.assertEqual(self.only(scene).radiance, (1, 1, 1))
         self.assertIn("world 'World': node 'Environment Texture' (Environment Texture) has no image", scene.notes[0])
-
-    def test_sky_texture_is_a_table_and_its_sun_a_cone(self):
-        sky = self.tree.nodes.new("ShaderNodeTexSky")
-        self.tree.links.new(sky.outputs["Color"], self.background.inputs["Color"])
-        sky.sun_elevation, sky.sun_rotation, sky.sun_size = 0.5, 0.7, 0.02
-        scene = self.gather()
-        self.assertEqual(scene.notes, [])
-        around, sun = scene.worlds
-        self.assertIsNone(around.cone)
-        expected = (math.cos(0.5) * math.sin(0.7), math.cos(0.5) * math.cos(0.7), math.sin(0.5), 0.02)
-        np.testing.assert_allclose(sun.cone, expected, atol=1e-6)
-        table, disc = (image.pixels for image in scene.images)
-        self.assertGreater(disc[len(disc) // 2, len(disc) // 2].min(), 100 * table.max())
-        sky.sun_disc = False
-        self.assertEqual(len(self.gather().worlds), 1)
-
-    def test_sky_that_cannot_be_measured_is_its_mean(self):
-        sky = self.tree.nodes.new("ShaderNodeTexSky")
-        self.tree.links.new(sky.outputs["Color"], self.background.inputs["Color"])
-        sky.sun_elevation = 0.51  # none that is known
-        with unittest.mock.patch.object(measured_sky, "SECONDS", 0.0):
-            scene = self.gather()
-        self.assertTrue(all(self.only(scene).radiance))
-        self.assertIn("node 'Sky Texture' (Sky Texture) could not be evaluated: a second Blender", scene.notes[0])
 
     def test_worlds_of_other_nodes(self):
         output = self.tree.get_output_node("ALL").inputs["Surface"]

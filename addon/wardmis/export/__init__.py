@@ -9,7 +9,7 @@ from typing import Any
 
 import bpy
 
-from .context import ExportCancelled, ExportError
+from .context import ExportCancelled, ExportError, Tell
 from .glb import write_glb
 from .motion import SetFrame
 from .scene import gather_scene
@@ -25,9 +25,10 @@ def export_depsgraph(
     camera: Any = None,
     cancelled: Callable[[], bool] | None = None,
     set_frame: SetFrame | None = None,
+    tell: Tell | None = None,
 ) -> list[str]:
     """Writes what the render of `depsgraph` needs to `path`; returns the notes for the user. `set_frame` takes `depsgraph` to other
-    times, for motion blur; it is left at its own.
+    times, for motion blur; it is left at its own. `tell` is called with what it is doing that takes long, and with "" afterwards.
 
     Raises ExportError (the scene cannot be exported, or the file not written) or ExportCancelled.
     """
@@ -37,6 +38,6 @@ def export_depsgraph(
             raise ExportCancelled
 
     generator = f"WardMIS {VERSION}, Blender {bpy.app.version_string}"
-    scene = gather_scene(depsgraph, generator, camera, cancelled, set_frame)
+    scene = gather_scene(depsgraph, generator, camera, cancelled, set_frame, tell)
     write_glb(scene, path, check_cancelled)
     return scene.notes

@@ -10,6 +10,7 @@ from typing import Any
 from .model import ImageData, TextureData, not_finite
 
 WRAPS = {"REPEAT": "repeat", "EXTEND": "clamp", "CLIP": "clip", "MIRROR": "mirror"}
+Tell = Callable[[str], None]  # what an export is doing now that takes long; "" afterwards
 FILTERS = {"Linear": "linear", "Closest": "nearest", "Cubic": "cubic", "Smart": "cubic"}
 
 
@@ -36,7 +37,11 @@ class ExportContext:
     """Handed to every part of the export; `owner` is the object being exported, for messages."""
 
     def __init__(
-        self, export_image: Callable[[Any], ImageData], cancelled: Callable[[], bool] | None = None, frame: int = 1
+        self,
+        export_image: Callable[[Any], ImageData],
+        cancelled: Callable[[], bool] | None = None,
+        frame: int = 1,
+        tell: Tell | None = None,
     ) -> None:
         self.frame = frame  # of the scene
         self.images: list[ImageData] = []
@@ -44,6 +49,8 @@ class ExportContext:
         self.notes: list[str] = []
         self.owner = ""
         self.foldings: dict[Any, Any] = {}  # by tree: what folding.py finds out about it
+        self.skies: dict[str, Any] = {}  # by settings: what measured_sky.py knows of them
+        self.tell = tell or (lambda _: None)
         self._export_image = export_image
         self._cancelled = cancelled
         self._next_check = 0.0

@@ -2,18 +2,17 @@
 """The radiance of a Sky Texture node, as this Blender's own Cycles has it: asked of a second Blender without windows.
 
 The models' data belong to Cycles, which gives them in no other way. It renders one sample a pixel, each of one direction that is
-chosen here: without noise, the same every time. The user's session takes no part. It takes a second or two; skies that were asked for
-in this session are known.
+chosen here: without noise, the same every time. The user's session takes no part. It takes two or three seconds; the last skies of this
+session are kept in its temporary folder, so that a sky is measured once and not for every render or frame.
 """
 
 from __future__ import annotations
 
+import hashlib
 import json
 import math
-import subprocess
-import tempfile
+import os
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -21,10 +20,18 @@ from typing import Any
 import bpy
 import numpy as np
 
+from .. import temporary
+from ..process import Renderer, RendererError
+from .context import ExportContext
+
 COLUMNS, ROWS = 512, 256  # of the sky: even steps in azimuth, and in the root of the height (as Nishita's has it)
 DISC = 64  # texels a side of the sun's disc
+SMALLEST_DISC = 5e-4  # radians: Cycles makes no smaller ones
 SECONDS = 120.0  # to wait
-SMALLEST_DISC = 1e-4  # radians
+KEPT = 32  # skies, of 1.6 MB
+NAME = "a second Blender, in which Cycles was to render it,"  # what messages call it
+
+_gave_no_answer = False  # within SECONDS: every frame of an animation would wait as long
 
 
 class NotMeasured(Exception):
@@ -37,7 +44,7 @@ class MeasuredSky:
 
     `disc`: (DISC, DISC, 3), what the disc adds in the square around it, in a plane that is orthogonal to the direction of the sun:
     `axes` are the square's own, and that direction, in the sky's coordinates; `size` is its full angle. Around the disc it is as at
-    its rim.
+    its rim. None: there is none, or it has set.
     """
 
     sky: np.ndarray
@@ -46,18 +53,21 @@ class MeasuredSky:
     size: float
 
 
-_known: dict[str, MeasuredSky] = {}
-
-
-def measured(node: Any, cancelled: Callable[[], None]) -> MeasuredSky:
-    """Raises NotMeasured, and what `cancelled` raises, which is called now and then."""
+def measured(node: Any, context: ExportContext) -> MeasuredSky:
+    """Raises NotMeasured, and ExportCancelled."""
     settings = _settings(node)
     key = json.dumps(settings, sort_keys=True)
-    if key not in _known:
-        if len(_known) > 64:
-            _known.clear()
-        _known[key] = _ask(settings, cancelled)
-    return _known[key]
+    if key not in context.skies:
+        try:
+            context.skies[key] = _found(settings, f"{hashlib.sha256(key.encode()).hexdigest()}.npz", context)
+        except (NotMeasured, RendererError) as error:
+            context.skies[key] = str(error)
+        except (OSError, ValueError, KeyError) as error:
+            context.skies[key] = f"{NAME} left nothing that can be read ({error})"
+    sky = context.skies[key]
+    if isinstance(sky, str):
+        raise NotMeasured(sky)
+    return sky
 
 
 def _settings(node: Any) -> dict[str, Any]:
@@ -72,9 +82,11 @@ def _settings(node: Any) -> dict[str, Any]:
     return settings
 
 
-def _has_disc(settings: dict[str, Any]) -> bool:
-    plain = settings["sky_type"] in {"PREETHAM", "HOSEK_WILKIE"}
-    return bool(not plain and settings["sun_disc"] and settings["sun_size"] > SMALLEST_DISC)
+def _size(settings: dict[str, Any]) -> float:
+    """The full angle of the sun's disc, in radians; 0: there is none."""
+    if settings["sky_type"] in {"PREETHAM", "HOSEK_WILKIE"} or not settings["sun_disc"]:
+        return 0.0
+    return max(float(settings["sun_size"]), SMALLEST_DISC)
 
 
 def directions() -> np.ndarray:
@@ -104,39 +116,48 @@ def _around(disc: np.ndarray) -> np.ndarray:
     return np.asarray(disc[np.rint(y * scale + middle).astype(int), np.rint(x * scale + middle).astype(int)])
 
 
-def _ask(settings: dict[str, Any], cancelled: Callable[[], None]) -> MeasuredSky:
+def _found(settings: dict[str, Any], name: str, context: ExportContext) -> MeasuredSky:
+    size = _size(settings)
+    axes = _axes(settings) if size > 0 else np.eye(3)
+    kept = temporary.kept("skies") / name
+    if not kept.exists():
+        context.tell("a second Blender measures the sky")
+        try:
+            _measure({"settings": settings, "axes": axes.tolist(), "size": size, "texels": DISC}, kept, context)
+        finally:
+            context.tell("")
+    with np.load(kept) as tables:
+        sky, disc = tables["sky"], tables["disc"]
+    return MeasuredSky(sky, _around(disc) if disc.any() else None, axes, size)
+
+
+def _measure(task: dict[str, Any], kept: Path, context: ExportContext) -> None:
+    """Into the file `kept`."""
     if not bpy.app.binary_path:
         raise NotMeasured("this Blender is no program that can be started again")
-    axes, size = (_axes(settings), float(settings["sun_size"])) if _has_disc(settings) else (np.eye(3), 0.0)
-    task = {"settings": settings, "axes": axes.tolist(), "tangent": math.tan(size / 2.0), "texels": DISC}
-    with tempfile.TemporaryDirectory(prefix="wardmis-sky-") as name:
-        folder = Path(name)
+    if _gave_no_answer:
+        raise NotMeasured(f"{NAME} has not answered before, and none is asked until Blender is started again")
+    for old in sorted(kept.parent.iterdir(), key=lambda path: path.stat().st_mtime)[: 1 - KEPT]:
+        old.unlink()
+    with temporary.folder() as folder:
         np.save(folder / "where.npy", directions().astype(np.float32))
+        task = {**task, "version": bpy.app.version_string}
         (folder / "task.json").write_text(json.dumps(task), encoding="utf-8")
         command = [bpy.app.binary_path, "--background", "--factory-startup", "--python-exit-code", "1"]
-        command += ["--python", str(Path(__file__).with_name("sky_child.py")), "--", name]
-        nothing = subprocess.DEVNULL
-        try:
-            with subprocess.Popen(command, stdin=nothing, stdout=nothing, stderr=nothing) as child:
-                try:
-                    _wait(child, cancelled)
-                finally:
-                    child.kill()
-            disc = _around(np.load(folder / "disc.npy")) if size > 0 else None
-            return MeasuredSky(np.load(folder / "sky.npy"), disc, axes, size)
-        except subprocess.TimeoutExpired:
-            raise NotMeasured(f"a second Blender has not answered for {SECONDS:g} s") from None
-        except (OSError, ValueError) as error:
-            raise NotMeasured(f"a second Blender, in which Cycles was to render it, has failed ({error})") from error
+        command += ["--python", str(Path(__file__).with_name("sky_child.py")), "--", str(folder)]
+        # nobody's own scripts; colours are managed as here
+        with Renderer(command, NAME, {**os.environ, "BLENDER_USER_SCRIPTS": str(folder)}) as child:
+            _wait(child, context)
+            child.finish()
+        (folder / "tables.npz").replace(kept)
 
 
-def _wait(child: subprocess.Popen[bytes], cancelled: Callable[[], None]) -> None:
+def _wait(child: Renderer, context: ExportContext) -> None:
+    global _gave_no_answer
     end = time.monotonic() + SECONDS
-    while True:
-        try:
-            child.wait(0.1)
-            return
-        except subprocess.TimeoutExpired:
-            if time.monotonic() > end:
-                raise
-        cancelled()
+    while child.running():
+        context.check_cancelled()
+        if time.monotonic() > end:
+            _gave_no_answer = True
+            raise NotMeasured(f"{NAME} has not answered for {SECONDS:g} s")
+        child.events(0.1)

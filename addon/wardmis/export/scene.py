@@ -13,7 +13,7 @@ import numpy as np
 from .. import compat
 from .attribute import OF_OBJECT, object_attributes
 from .camera import export_camera, export_film
-from .context import ExportContext, ExportError
+from .context import ExportContext, ExportError, Tell
 from .hashing import random_of
 from .image import export_image
 from .light import export_light
@@ -50,21 +50,22 @@ def gather_scene(
     camera: Any = None,
     cancelled: Callable[[], bool] | None = None,
     set_frame: SetFrame | None = None,
+    tell: Tell | None = None,
 ) -> SceneData:
     """Everything that the render of `depsgraph` needs. `camera`: instead of the scene's active one. `set_frame`: takes `depsgraph` to
-    another time; without it nothing is blurred by its motion.
+    another time; without it nothing is blurred by its motion. `tell` is called with what takes long.
 
     Raises ExportError with a message for the user, and ExportCancelled once `cancelled()` answers true.
     """
     opening = opening_of(depsgraph.scene_eval, depsgraph.view_layer_eval)
     if opening is None:
-        return _gather(depsgraph, generator, camera, cancelled, None, None)
+        return _gather(depsgraph, generator, camera, cancelled, None, None, tell)
     if set_frame is None:
-        result = _gather(depsgraph, generator, camera, cancelled, None, None)
+        result = _gather(depsgraph, generator, camera, cancelled, None, None, tell)
         result.notes.append("motion blur is left out: it needs a render; the frame is exported at its own time")
         return result
     with at_its_own_frame_again(depsgraph.scene, set_frame):
-        return _gather(depsgraph, generator, camera, cancelled, opening, set_frame)
+        return _gather(depsgraph, generator, camera, cancelled, opening, set_frame, tell)
 
 
 def _gather(
@@ -74,6 +75,7 @@ def _gather(
     cancelled: Callable[[], bool] | None,
     opening: Opening | None,
     set_frame: SetFrame | None,
+    tell: Tell | None,
 ) -> SceneData:
     frame = depsgraph.scene_eval.frame_current
     if opening is not None and set_frame is not None and opening.middle != frame + depsgraph.scene_eval.frame_subframe:
@@ -82,7 +84,7 @@ def _gather(
     camera = camera or scene.camera
     film = export_film(scene)
     film.keep_uvs = depsgraph.view_layer.use_pass_uv
-    context = ExportContext(export_image, cancelled, frame)
+    context = ExportContext(export_image, cancelled, frame, tell)
     motion = None
     if opening is not None and set_frame is not None:
         motion = Motion(opening, set_frame, depsgraph.scene, context)

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Run by a second Blender for measured_sky.py: has Cycles render a Sky Texture node in given directions.
 
-Reads task.json and where.npy of the folder that it is told; writes sky.npy, and disc.npy if the sun has one.
+Reads task.json and where.npy of the folder that it is told; writes tables.npz: "sky", and "disc", of zeros if there is none.
 """
 
 from __future__ import annotations
 
 import json
+import math
 import sys
 from pathlib import Path
 from typing import Any
@@ -18,26 +19,29 @@ from mathutils import Matrix
 
 def main(folder: Path) -> None:
     task = json.loads((folder / "task.json").read_text(encoding="utf-8"))
-    settings = task["settings"]
+    if task["version"] != bpy.app.version_string:
+        raise RuntimeError(f"it is Blender {bpy.app.version_string} now, not {task['version']}; restart Blender")
     scene = bpy.context.scene
     for obj in list(bpy.data.objects):
         bpy.data.objects.remove(obj)
     camera = scene.camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     scene.collection.objects.link(camera)
-    tree, sky = _world(scene, settings)
-    if task["tangent"] > 0:  # with a disc the node takes no coordinates but those of the world
+    tree, sky = _world(scene, task["settings"])
+    texels = task["texels"]
+    disc: np.ndarray = np.zeros((texels, texels, 3), np.float32)
+    if task["size"] > 0:  # with a disc the node takes no coordinates but those of the world
         right, up, sun = task["axes"]
         camera.matrix_world = Matrix(np.array((right, up, np.negative(sun))).T.tolist()).to_4x4()
         camera.data.sensor_width = 1.0
-        camera.data.lens = 0.5 / task["tangent"]
-        with_disc = _rendered(scene, folder, task["texels"], task["texels"])
+        camera.data.lens = 0.5 / math.tan(task["size"] / 2.0)
+        with_disc = _rendered(scene, folder, texels, texels)
         sky.sun_disc = False
-        np.save(folder / "disc.npy", with_disc - _rendered(scene, folder, task["texels"], task["texels"]))
+        disc = with_disc - _rendered(scene, folder, texels, texels)
     if hasattr(sky, "sun_disc"):
         sky.sun_disc = False
     where = np.load(folder / "where.npy")
     _look(tree, sky, where)
-    np.save(folder / "sky.npy", _rendered(scene, folder, where.shape[1], where.shape[0]))
+    np.savez(folder / "tables.npz", sky=_rendered(scene, folder, where.shape[1], where.shape[0]), disc=disc)
 
 
 def _world(scene: Any, settings: dict[str, Any]) -> tuple[Any, Any]:
@@ -57,7 +61,7 @@ def _look(tree: Any, sky: Any, where: np.ndarray) -> None:
     """At the sky in the direction that an image holds for each pixel."""
     height, width = where.shape[:2]
     image = bpy.data.images.new("Where", width, height, float_buffer=True, alpha=False)
-    image.colorspace_settings.name = "Non-Color"
+    image.colorspace_settings.is_data = True
     pixels: np.ndarray = np.ones((height, width, 4), np.float32)
     pixels[..., :3] = where
     image.pixels.foreach_set(pixels.ravel())
@@ -83,7 +87,7 @@ def _rendered(scene: Any, folder: Path, width: int, height: int) -> np.ndarray:
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
     bpy.ops.render.render(write_still=True)
     image = bpy.data.images.load(render.filepath)
-    image.colorspace_settings.name = "Non-Color"
+    image.colorspace_settings.is_data = True
     pixels = np.empty(width * height * image.channels, np.float32)
     image.pixels.foreach_get(pixels)
     bpy.data.images.remove(image)
@@ -91,4 +95,8 @@ def _rendered(scene: Any, folder: Path, width: int, height: int) -> np.ndarray:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[sys.argv.index("--") + 1]))
+    try:
+        main(Path(sys.argv[sys.argv.index("--") + 1]))
+    except Exception as error:
+        print(json.dumps({"event": "error", "message": str(error)}), flush=True)
+        raise

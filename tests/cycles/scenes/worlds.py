@@ -456,7 +456,7 @@ OLD, NEW = (
 
 
 def model_of_sky(index, strength, build=shiny_things, **settings):
-    """The model of this Blender that has the number, seen by the camera and in a mirror."""
+    """The model of this Blender that has the number, seen by the camera; returns its node."""
     build()
     tree = sky((1, 1, 1), strength)
     models = OLD if bpy.app.version < (5, 0) else NEW
@@ -466,29 +466,81 @@ def model_of_sky(index, strength, build=shiny_things, **settings):
     tree.links.new(node.outputs[0], tree.nodes["Background"].inputs["Color"])
     bpy.context.scene.camera.rotation_euler = 1.4, 0, 0.05
     bpy.context.scene.camera.data.lens = 22
+    return node
+
+
+def looked_at(node, **settings):
+    """Obliquely."""
+    tree = node.id_data
+    mapping = add(tree, "Mapping", {"vector_type": "TEXTURE"}, Rotation=(0.4, -0.3, 0.7), **settings)
+    tree.links.new(add(tree, "TexCoord").outputs["Generated"], mapping.inputs["Vector"])
+    tree.links.new(mapping.outputs[0], node.inputs["Vector"])
 
 
 @scene
-def preetham():
+def sky_preetham():
     model_of_sky(0, 0.5, sun_direction=(0.5, 0.4, 0.6), turbidity=4.0)
 
 
 @scene
-def hosek_wilkie():
+def sky_preetham_oblique():
+    looked_at(model_of_sky(0, 0.5, sun_direction=(0.5, 0.4, 0.6)))
+
+
+@scene
+def sky_hosek_wilkie():
     model_of_sky(1, 2.0, sun_direction=(-0.5, 0.4, 0.4), turbidity=3.0, ground_albedo=0.5)
 
 
 @scene
-def atmosphere():
+def sky_atmosphere():
     model_of_sky(2, 0.2, sun_disc=False, sun_elevation=0.3, sun_rotation=0.8, altitude=500.0)
 
 
 @scene
-def atmosphere_with_a_sun():
+def sky_atmosphere_oblique():
+    looked_at(model_of_sky(2, 0.2, sun_disc=False, sun_elevation=0.3, sun_rotation=0.8), Scale=(1.0, 1.5, 0.8))
+
+
+@scene
+def sky_with_a_sun():
     """Without a mirror, where the sun would be noise."""
     model_of_sky(2, 0.1, things, sun_elevation=0.7, sun_rotation=2.5, sun_size=0.03, air_density=1.5)
 
 
+@scene(since=(4, 0))
+def sky_with_the_smallest_sun():
+    """Before, Cycles' density of directions within it is 1/(1 - cos) of single precision."""
+    model_of_sky(2, 0.1, things, sun_elevation=0.7, sun_rotation=-2.5, sun_size=0.0, sun_intensity=0.3)
+
+
+@scene
+def sky_with_a_sun_at_the_horizon():
+    model_of_sky(2, 0.3, things, sun_elevation=0.02, sun_rotation=2.5, sun_size=0.2)
+
+
+@scene
+def sky_with_a_sun_oblique():
+    """By the map of the node itself: with a sun it has no coordinates."""
+    node = model_of_sky(2, 0.1, things, sun_elevation=0.9, sun_rotation=2.5, sun_size=0.03)
+    node.texture_mapping.rotation = 0.3, 0.2, 0.9
+
+
+@scene
+def sky_with_a_sun_past_the_zenith():
+    model_of_sky(2, 0.1, things, sun_elevation=2.3, sun_rotation=1.0, sun_size=0.03)
+
+
+@scene
+def sky_of_two():
+    """Mixed, one with a sun. (Of two suns Cycles aims at none.)"""
+    node = model_of_sky(2, 0.1, things, sun_elevation=0.9, sun_rotation=2.5, sun_size=0.03)
+    tree = node.id_data
+    other = add(tree, "TexSky", {"sky_type": "HOSEK_WILKIE", "sun_direction": (0.5, 0.4, 0.6), "sun_disc": False})
+    mix = add(tree, "MixRGB", Fac=0.3, Color1=node.outputs[0], Color2=other.outputs[0])
+    tree.links.new(mix.outputs[0], tree.nodes["Background"].inputs["Color"])
+
+
 @scene(since=(5, 0))
-def scattered_often():
+def sky_scattered_often():
     model_of_sky(3, 0.1, things, sun_elevation=0.2, sun_rotation=2.5, ozone_density=2.0)

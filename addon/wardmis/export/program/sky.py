@@ -20,7 +20,7 @@ from .reader import Reader
 def _sky(use: NodeUse, _output: Any, p: Reader) -> Value:
     node = use.node
     try:
-        found = measured(node, use.owner.context.check_cancelled)
+        found = measured(node, use.owner.context)
     except NotMeasured as why:
         use.note(f"could not be evaluated: {why}; the mean of its light over all directions is used instead")
         return mean_radiance(node)
