@@ -4,17 +4,19 @@
 import json
 from dataclasses import asdict, dataclass
 
+CYCLES = "Cycles"  # among the allocations
+
 
 @dataclass
 class Row:
     scene: str
-    allocation: str  # or "Cycles"
+    allocation: str  # or CYCLES
     seconds: float  # pilot included; Cycles: its own render time
     pilot_seconds: float | None
     samples_per_pixel: int  # camera samples
     samples: int | None  # at the first hit, of all techniques
     rays: int | None
-    rel_mse: float | None  # against the reference of the same renderer; Cycles: not comparable
+    rel_mse: float | None  # against a reference of this renderer; Cycles: where it shows the same materials
     rel_mse_trimmed: float | None
 
 
@@ -77,7 +79,7 @@ SCATTER = 1.25
 
 def verdict(rows: list[Row], baseline: str = "equal") -> str:
     """Which allocation one scene's `rows` speak for: error times time against the baseline's, since time buys less error."""
-    cost = {r.allocation: r.rel_mse * r.seconds for r in rows if r.rel_mse is not None}
+    cost = {r.allocation: r.rel_mse * r.seconds for r in rows if r.allocation != CYCLES and r.rel_mse is not None}
     ratios = {name: value / cost[baseline] for name, value in cost.items() if name != baseline}
     said = ", ".join(f"{name} {ratio:.2f}" for name, ratio in ratios.items())
     best = min(ratios, key=lambda name: ratios[name])

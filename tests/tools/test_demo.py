@@ -98,6 +98,13 @@ class Table(unittest.TestCase):
         self.assertRegex(said(0.0123 / 2, 3.25), "^teapot: use auto. Error times time, equal being 1: auto 0.50.$")
         self.assertRegex(said(0.0123, 3.25 * 0.9), "^teapot: use equal. .*: auto 0.90; .* none is better")
 
+    def test_verdict_is_of_allocations_alone(self):
+        """Cycles has an error where it shows the same materials."""
+        other = table.Row("studio", "auto", 3.25, 0.5, 64, 1, 1, 0.0123, 0.0123)
+        cycles = table.Row("studio", "Cycles", 0.1, None, 64, None, None, 0.0001, 0.0001)
+        said = table.verdict([self.rows[0], other, cycles])
+        self.assertNotIn("Cycles", said)
+
     def test_json_keeps_full_precision(self):
         read = json.loads(table.as_json(self.rows, ["n"]))
         self.assertEqual(read["rows"][0]["rel_mse"], 0.0123)
