@@ -10,9 +10,9 @@ import bpy
 import numpy as np
 from wardmis import compat
 from wardmis.export.context import ExportContext
-from wardmis.export.folding import FOLDS
 from wardmis.export.image import export_image
 from wardmis.export.material import export_material
+from wardmis.export.program.folding import FOLDS
 
 MAGENTA = (1.0, 0.0, 1.0)
 
@@ -327,8 +327,8 @@ class NotUnderstood(MaterialCase):
                 self.assertNoted(f"({node.bl_label}) is not supported as a colour or number", "instead")
 
     def test_every_node_that_gives_a_value_is_understood_or_has_a_neutral_one(self):
+        from wardmis.export.program.neutral import NEUTRAL
         from wardmis.export.program.nodes import NODES
-        from wardmis.export.read import CONVERTERS, NEUTRAL
 
         # Cycles does not know them, or they are the ends of trees, or need a script
         others = {"Script", "ShaderToRGB", "UVAlongStroke", "Squeeze", "Output", "Holdout", "EeveeSpecular", "Custom"}
@@ -342,7 +342,6 @@ class NotUnderstood(MaterialCase):
             if any(socket.type in {"VALUE", "RGBA", "VECTOR"} for socket in node.outputs):
                 with self.subTest(name):
                     self.assertIn(name, NODES | NEUTRAL)
-                    self.assertIn(name, CONVERTERS | NEUTRAL)
 
     def test_parts_of_shaders_that_are_left_out_are_named_where_they_are_there(self):
         for kind, name, words in (

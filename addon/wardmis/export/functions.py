@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What Blender's nodes compute of numbers and colours, as Cycles does: functions of arrays (..., 3) that see one texel at a time.
+"""What Blender's nodes compute of numbers and colours, as Cycles does: functions of arrays (..., 3).
 
 A number is a grey colour. Nothing here divides by zero or takes a root of less.
 """
@@ -12,6 +12,12 @@ from typing import Any
 import numpy as np
 
 Function = Callable[..., Any]
+LUMINANCE = np.array((0.2126, 0.7152, 0.0722))  # of linear Rec. 709
+
+
+def luminance(c: Any) -> Any:
+    """(...)."""
+    return c @ LUMINANCE
 
 
 def divide(a: Any, b: Any) -> Any:

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -31,25 +30,28 @@ PNG_TYPE, GREY_WITH_ALPHA = 25, 4  # where a PNG says what its pixels are, and o
 
 
 @dataclass(frozen=True)
-class BakedImage:
-    """Pixels that the exporter makes of an image, under the names by which the context tells images apart."""
+class Pixels:
+    """Linear ones that the exporter makes, under the names by which the context tells images apart."""
 
     name: str
     name_full: str
-    pixels: Callable[[], np.ndarray]  # (height, width, channels) float32
-    is_encoded: bool  # whether they are sRGB, to be filtered as such
+    pixels: np.ndarray  # (height, width, channels) float32, rows from the bottom
+
+    def export(self) -> ImageData:
+        return ImageData(self.name, "linear", pixels=self.pixels)
 
 
 @dataclass(frozen=True)
 class Picture:
     """What an image node shows of an image, as Cycles does: which picture of a sequence, and what alpha does to the colours.
 
-    `alpha`: the colours are "kept" as they are stored, "multiplied" by it, "divided" by it after they are filtered, or both, "restored";
-    or it is "ignored", and 1.
+    `alpha`: the colours are "kept" as they are stored, or "multiplied" by it; or it is "ignored", and 1. `divided`: the colours are
+    divided by it after they are filtered.
     """
 
     image: Any
     alpha: str = "kept"
+    divided: bool = False
     frame: int | None = None  # of a sequence
 
     @property
@@ -107,9 +109,9 @@ class Picture:
     def export(self) -> ImageData:
         """A missing one becomes a magenta texel."""
         if self.missing():
-            return ImageData(self.name, "linear", pixels=self.texels()[..., :3])
+            return ImageData(self.name, "linear", pixels=np.array([[MISSING]], np.float32))
         mime_type = self.mime_type
-        readable = self.image.colorspace_settings.name in COLOR_SPACES and self.alpha != "divided"
+        readable = self.image.colorspace_settings.name in COLOR_SPACES
         if mime_type and readable:
             return ImageData(
                 self.name,
@@ -120,25 +122,7 @@ class Picture:
                 alpha={"multiplied": "multiplies", "ignored": "ignored"}.get(self.alpha, "kept"),
             )
         space = "sRGB" if self.is_encoded else "linear"
-        pixels = self._stored("kept" if self.alpha == "restored" else self.alpha)
-        return ImageData(self.name, space, pixels=pixels, filter_encoded=self.is_encoded)
-
-    def texels(self, filtered: Callable[[np.ndarray], np.ndarray] = lambda pixels: pixels) -> np.ndarray:
-        """(height, width, 4) float32: linear RGBA, rows from the bottom; after `filtered` of what is stored, as floats."""
-        if self.missing():
-            return np.array([[(*MISSING, 1.0)]], np.float32)
-        if 0 in self.image.size:  # a picture of a sequence that Blender has not looked at
-            return np.array([[(0.5, 0.5, 0.5, 1.0)]], np.float32)
-        stored = self._stored("kept" if self.alpha == "divided" else self.alpha)
-        pixels = filtered(stored.astype(np.float32) / np.float32(255 if stored.dtype == np.uint8 else 1))
-        if self.alpha in {"divided", "restored"} and pixels.shape[2] == 4:
-            pixels = np.concatenate([_over_alpha(pixels), pixels[..., 3:]], axis=-1)
-        height, width, channels = pixels.shape
-        if channels < 3:
-            pixels = np.repeat(pixels[..., :1], 3, axis=-1)
-        alpha = pixels[..., 3:] if channels == 4 else np.ones((height, width, 1), np.float32)
-        colors = pixels[..., :3]
-        return np.concatenate([decode_srgb(colors) if self.is_encoded else colors, alpha], axis=-1)
+        return ImageData(self.name, space, pixels=self._stored(), filter_encoded=self.is_encoded)
 
     def missing(self) -> str | None:
         """Why there are no pixels, naming the image and its file, or None."""
@@ -198,7 +182,7 @@ class Picture:
         straight = self.image.alpha_mode == "STRAIGHT"
         return self.mime_type == "image/png" or (self.mime_type == "image/x-exr" and straight)
 
-    def _stored(self, alpha: str) -> np.ndarray:
+    def _stored(self) -> np.ndarray:
         """(height, width, channels) uint8, or float32 where the image is one or alpha divides: sRGB if `is_encoded`, else linear.
 
         To be "restored" they are multiplied here.
@@ -214,18 +198,15 @@ class Picture:
             pixels = np.concatenate([_over_alpha(pixels), pixels[..., 3:]], axis=-1)
         if image.is_float and self.is_encoded:
             pixels = np.concatenate([encode_srgb(pixels[..., :3]), pixels[..., 3:]], axis=-1)
-        if image.channels < 4 or alpha == "kept":
+        if image.channels < 4 or self.alpha == "kept":
             return pixels
-        if alpha == "ignored":
+        if self.alpha == "ignored":
             return pixels[..., :3]
-        if alpha in {"multiplied", "restored"}:
-            if pixels.dtype == np.uint8:
-                pixels[..., :3] = pixels[..., :3].astype(np.uint16) * pixels[..., 3:] // 255
-            else:
-                pixels[..., :3] *= pixels[..., 3:]
-            return pixels
-        values = pixels.astype(np.float32) / np.float32(255 if pixels.dtype == np.uint8 else 1)
-        return np.concatenate([_over_alpha(values), values[..., 3:]], axis=-1)
+        if pixels.dtype == np.uint8:
+            pixels[..., :3] = pixels[..., :3].astype(np.uint16) * pixels[..., 3:] // 255
+        else:
+            pixels[..., :3] *= pixels[..., 3:]
+        return pixels
 
 
 def picture_of(image: Any, shows_alpha: bool, user: Any, scene_frame: int) -> Picture:
@@ -233,7 +214,7 @@ def picture_of(image: Any, shows_alpha: bool, user: Any, scene_frame: int) -> Pi
 
     Cycles multiplies colours by alpha where the file has not done so, and divides them again where the alpha is used.
     """
-    alpha = "ignored" if image.alpha_mode == "NONE" else "kept"
+    alpha, divided = "ignored" if image.alpha_mode == "NONE" else "kept", False
     space = image.colorspace_settings.name
     if image.alpha_mode in {"STRAIGHT", "PREMUL"} and space not in DATA:
         integers = not image.is_float or Picture(image).mime_type == "image/png"
@@ -242,8 +223,8 @@ def picture_of(image: Any, shows_alpha: bool, user: Any, scene_frame: int) -> Pi
             is_done = Picture(image).is_grey_with_alpha or (premultiplied and compat.ALPHA_MODES_ARE_TRUSTED)
         else:
             is_done = premultiplied or not compat.ALPHA_MODES_ARE_TRUSTED
-        alpha = ("divided" if shows_alpha else "kept") if is_done else ("restored" if shows_alpha else "multiplied")
-    return Picture(image, alpha, frame_of(user, scene_frame) if image.source == "SEQUENCE" else None)
+        alpha, divided = "kept" if is_done else "multiplied", shows_alpha
+    return Picture(image, alpha, divided, frame_of(user, scene_frame) if image.source == "SEQUENCE" else None)
 
 
 def frame_of(user: Any, scene_frame: int) -> int:
@@ -266,16 +247,8 @@ def path_of_frame(path: str, frame: int) -> str:
     return os.path.join(folder, f"{name[: number.start()]}{frame:0{len(number[1])}}{name[number.end() :]}")
 
 
-def export_image(image: Picture | BakedImage) -> ImageData:
-    if isinstance(image, BakedImage):
-        space = "sRGB" if image.is_encoded else "linear"
-        return ImageData(image.name, space, pixels=image.pixels(), filter_encoded=image.is_encoded)
+def export_image(image: Picture | Pixels) -> ImageData:
     return image.export()
-
-
-def decode_srgb(v: np.ndarray) -> np.ndarray:
-    curve = ((np.maximum(v, 0.0) + 0.055) / 1.055) ** 2.4
-    return np.where(v <= 0.04045, v / 12.92, curve).astype(np.float32)
 
 
 def encode_srgb(v: np.ndarray) -> np.ndarray:

@@ -19,7 +19,7 @@ from .model import LARGEST, LightData
 from .program.closures import BLACK
 from .program.emission import Light, emission
 from .program.reader import Reader
-from .read import NotFinite
+from .socket_value import NotFinite
 from .tree import Owner, output_use
 
 SHEARED = 1e-3  # the cosine between an area light's sides, from which on they count as not orthogonal

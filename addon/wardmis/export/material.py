@@ -15,8 +15,8 @@ from .model import ColorInput, MaterialData, ScalarInput, not_finite
 from .program.closures import Shading
 from .program.reader import Reader
 from .program.surface import MOST_OPERATIONS, material_of
+from .socket_value import NotFinite
 from .tree import Owner, output_use
-from .value import NotFinite
 
 
 def export_material(material: Any, context: ExportContext) -> MaterialData:

@@ -12,7 +12,7 @@ from .model import WorldData, not_finite
 from .program.builder import Value
 from .program.emission import Light, emission, image_of_directions
 from .program.reader import Reader
-from .read import NotFinite
+from .socket_value import NotFinite
 from .tree import RAYS, Owner, output_use
 
 

@@ -10,7 +10,6 @@ import numpy as np
 
 from .. import functions as f
 from ..spectrum import blackbody, wavelength
-from ..value import grey
 
 Fold = Callable[..., Any]
 
@@ -123,7 +122,7 @@ FOLDS: dict[str, Fold] = {
     "x": _component(0),
     "y": _component(1),
     "z": _component(2),
-    "luminance": grey,
+    "luminance": f.luminance,
     "mean": np.mean,
     "clamp": f.clamped,
     "clamp-range": f.clamped_to_range,

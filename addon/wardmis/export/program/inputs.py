@@ -5,17 +5,18 @@ from __future__ import annotations
 
 from typing import Any
 
+import bpy
+
 from ... import compat
 from ..attribute import DEFAULT_COLOR
-from ..converters import WITHOUT_IES, has_ies_file
-from ..read import own_value
+from ..socket_value import own_value
 from ..tree import NodeUse
 from .builder import Value, constant, is_zero
 from .reader import Reader, kind_of_socket
 
 
 def _own(use: NodeUse, output: Any, p: Reader) -> Value:
-    return constant(own_value(use, output).factor, kind_of_socket(output.type))
+    return constant(own_value(use, output), kind_of_socket(output.type))
 
 
 SHIFTED = {"position", "uv", "generated", "object", "camera", "window", "parametric"}
@@ -177,9 +178,26 @@ def _light_falloff(use: NodeUse, output: Any, p: Reader) -> Value:
     return p(f"light-falloff-{output.name.lower()}", strength, smooth, version=compat.CYCLES)
 
 
+WITHOUT_IES = 100.0  # what Cycles has instead of a file
+MOST_OF_IES = 1 << 20  # bytes, within which the first keyword stands
+
+
+def _has_ies_file(node: Any) -> bool:
+    """Whether an IES node has what Cycles reads as a file."""
+    if node.mode == "INTERNAL":
+        text = "" if node.ies is None else node.ies.as_string()
+    else:
+        try:
+            with open(bpy.path.abspath(node.filepath), encoding="latin-1") as file:
+                text = file.read(MOST_OF_IES)
+        except OSError:
+            text = ""
+    return "\nTILT=" in text
+
+
 def _ies(use: NodeUse, _output: Any, p: Reader) -> Value | None:
     """None: what a file says is not supported."""
-    if has_ies_file(use.node):
+    if _has_ies_file(use.node):
         return None
     use.note("has no IES file; its strength counts a hundredfold, as in Cycles")
     return p.multiply(p.read(use, "Strength"), WITHOUT_IES)

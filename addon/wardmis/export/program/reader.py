@@ -10,9 +10,7 @@ from typing import Any
 from mathutils import Matrix
 
 from ... import compat
-from .. import converters  # noqa: F401  fills what read() and folding know
-from ..neutral import NEUTRAL
-from ..read import own_value
+from ..socket_value import own_value
 from ..tree import NodeUse, Source
 from .builder import Builder, Result, Value, constant, is_constant, kind_of
 
@@ -112,7 +110,7 @@ class Reader(Builder):
         if is_constant(value):
             return float(value)  # type: ignore[arg-type]
         use.note(f"needs a constant as its '{name}'; the input's own is used instead")
-        return float(own_value(use, use.node.inputs[name]).factor[0])
+        return float(own_value(use, use.node.inputs[name])[0])
 
     def mapped(self, vector: Value, matrices: list[Matrix]) -> Value:
         """By maps one after the other, the last one first; between two of them the vector is made a unit one."""
@@ -148,7 +146,7 @@ class Reader(Builder):
         if source.socket is None:
             return constant(0.0, kind)
         if source.use is None:
-            return constant(own_value(use, source.socket).factor, kind)
+            return constant(own_value(use, source.socket), kind)
         return self._given(source.use, source.socket, use, key)
 
     def _given(self, origin: NodeUse, output: Any, use: NodeUse, key: str | int) -> Value:
@@ -168,14 +166,15 @@ class Reader(Builder):
         self._outputs[place] = None
         value = self._of_node(origin, output)
         if value is None:  # nothing can be said about it: the value of the input that it feeds
-            value = constant(own_value(use, use.node.inputs[key]).factor, "vector")
+            value = constant(own_value(use, use.node.inputs[key]), "vector")
         kind = kind_of_socket(output.type)
         value = self.vector(value) if kind == "vector" else self("x", value) if kind_of(value) == "vector" else value
         self._outputs[place] = value
         return value
 
     def _of_node(self, use: NodeUse, output: Any) -> Value | None:
-        from .nodes import NODES  # late: nodes are read by this class
+        from .neutral import NEUTRAL  # late: nodes are read by this class
+        from .nodes import NODES
 
         kind = use.node.bl_idname
         value = NODES[kind](use, output, self) if kind in NODES else None
@@ -184,6 +183,6 @@ class Reader(Builder):
         if kind not in NEUTRAL:
             use.note("is not supported as a colour or number; the constant of the input that it feeds is used instead")
             return None
-        neutral, what = NEUTRAL[kind](use, output)
+        neutral, what = NEUTRAL[kind](use, output, self)
         use.note(f"is not supported as a colour or number; {what} is used instead")
-        return constant(neutral.mean().factor, kind_of_socket(output.type))
+        return neutral

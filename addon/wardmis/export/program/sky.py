@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..image import BakedImage
+from ..image import Pixels
 from ..mapping import own_mapping
 from ..measured_sky import COLUMNS, DISC, ROWS, MeasuredSky, NotMeasured, measured
 from ..sky import mean_radiance
@@ -38,7 +38,7 @@ def _sky(use: NodeUse, _output: Any, p: Reader) -> Value:
 
 def _looked_up(use: NodeUse, p: Reader, name: str, pixels: np.ndarray, extension: str, place: Value) -> Value:
     known = f"{name} {hash(pixels.tobytes())} {pixels.shape}"
-    image = BakedImage(f"{name} (sky)", known, lambda: pixels.astype(np.float32), False)
+    image = Pixels(f"{name} (sky)", known, pixels.astype(np.float32))
     return p("image", place, texture=use.owner.context.texture(image, "Linear", extension))
 
 

@@ -3,29 +3,19 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
-from ..image import MISSING, Picture
-from ..texture import picture
+from ..image import MISSING, Picture, picture_of
 from ..tree import NodeUse
 from .builder import Value
+from .folding import Folding
 from .patterns import coordinates
 from .reader import Reader
-
-# what is done to the colours before they are filtered, and whether they are divided by alpha after that
-ALPHA = {
-    "kept": ("kept", False),
-    "multiplied": ("multiplied", False),
-    "divided": ("kept", True),
-    "restored": ("multiplied", True),
-    "ignored": ("ignored", False),
-}
 
 
 def _image(use: NodeUse, output: Any, p: Reader) -> Value:
     node = use.node
-    found = picture(use, p.is_light)
+    found = _picture(use, p.is_light)
     if found is None:
         return _missing(output, p.is_light)
     parameters = _texture(use, found, node.extension)
@@ -38,7 +28,7 @@ def _image(use: NodeUse, output: Any, p: Reader) -> Value:
 
 
 def _environment(use: NodeUse, output: Any, p: Reader) -> Value:
-    found = picture(use, p.is_light)
+    found = _picture(use, p.is_light)
     if found is None:
         return _missing(output, p.is_light)
     projection = {} if use.node.projection == "EQUIRECTANGULAR" else {"projection": "mirror-ball"}
@@ -47,12 +37,37 @@ def _environment(use: NodeUse, output: Any, p: Reader) -> Value:
     return p(f"environment{alpha}", coordinates(use, p, "position"), **projection, **parameters)
 
 
+def _picture(use: NodeUse, is_light: bool) -> Picture | None:
+    """None, and a note, where there is nothing to show. `is_light`: it colours light."""
+    node = use.node
+    instead = "grey light is" if is_light else "magenta is"
+    if node.image is None:
+        use.note(f"has no image; {instead} shown instead")
+        return None
+    found = picture_of(node.image, _shows_alpha(use), node.image_user, use.owner.context.frame)
+    reason = found.missing()
+    if reason is not None:
+        use.note(f"needs an image; {reason}; {instead} shown instead")
+        return None
+    for deviation in found.deviations():
+        use.note(f"shows {deviation}")
+    return found
+
+
+def _shows_alpha(use: NodeUse) -> bool:
+    """Whether Cycles finds the node's Alpha used; of an environment it does not ask."""
+    if use.node.bl_idname != "ShaderNodeTexImage" or use.node.image.alpha_mode not in {"STRAIGHT", "PREMUL"}:
+        return False
+    tree = (use.groups[0] if use.groups else use.node).id_data
+    foldings, key = use.owner.context.foldings, (use.owner.place, tree.as_pointer())
+    if key not in foldings:
+        foldings[key] = Folding(use.owner, tree)
+    return bool(foldings[key].shows_alpha(use))
+
+
 def _texture(use: NodeUse, found: Picture, extension: str) -> dict[str, Any]:
-    alpha, unassociate = ALPHA[found.alpha]
-    context = use.owner.context
-    shown = replace(found, alpha=alpha)
-    index = context.texture(shown, use.node.interpolation, extension)
-    return {"texture": index} | ({"unassociate": True} if unassociate else {})
+    index = use.owner.context.texture(found, use.node.interpolation, extension)
+    return {"texture": index} | ({"unassociate": True} if found.divided else {})
 
 
 UNKNOWN_LIGHT = (0.5, 0.5, 0.5)  # whose image cannot be shown

@@ -7,7 +7,7 @@ from typing import Any
 
 from ... import compat
 from ..mapping import affine
-from ..read import own_value
+from ..socket_value import own_value
 from ..tree import NodeUse
 from .builder import Value, constant, is_constant
 from .colors import curve_table
@@ -56,7 +56,7 @@ def _vector_transform(use: NodeUse, _output: Any, p: Reader) -> Value:
 
 
 def _normal(use: NodeUse, output: Any, p: Reader) -> Value:
-    direction = constant(own_value(use, use.node.outputs[0]).factor, "vector")
+    direction = constant(own_value(use, use.node.outputs[0]), "vector")
     if output.name == "Normal":
         return direction
     given = p("vector-normalize", p.read(use, 0))

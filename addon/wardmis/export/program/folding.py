@@ -14,10 +14,11 @@ from typing import Any
 
 import numpy as np
 
-from .. import compat
-from .read import CONVERTERS, own_value
-from .tree import NodeUse, Owner, Source, output_use
-from .value import NotFinite, Value, calculator, converted
+from ... import compat
+from ..socket_value import NotFinite, own_value
+from ..tree import NodeUse, Owner, Source, output_use
+from .builder import Result, Value, constant
+from .reader import Reader, kind_of_socket
 
 ENDS = ("Surface", "Volume", "Displacement")  # of an output node
 
@@ -181,37 +182,40 @@ class _WithConstants(NodeUse):
 
     def source(self, key: str | int) -> Source:
         index = key if isinstance(key, int) else list(self.node.inputs).index(self.node.inputs[key])
-        name = self.node.inputs[index].name
-        return Source(SimpleNamespace(default_value=self.constants[index], name=name, type="VALUE"), None, ())
+        socket = self.node.inputs[index]
+        given = SimpleNamespace(default_value=self.constants[index], name=socket.name, type=socket.type)
+        return Source(given, None, (socket.type,))
 
 
 def _computed(use: NodeUse, output: Any, constants: dict[int, Constant]) -> Constant:
-    kind = use.node.bl_idname
-    if kind not in CONVERTERS or any(x.value is None for x in constants.values()):
+    from .nodes import NODES  # late: one of them asks whether its alpha is used
+
+    if any(x.value is None for x in constants.values()):
         return Constant(None)
     fixed = _WithConstants(use.node, use.groups, use.owner, {key: x.value for key, x in constants.items()})
     try:
-        value = CONVERTERS[kind](fixed, output)
+        return _known(NODES[use.node.bl_idname](fixed, output, Reader(use.owner.kind)))
     except NotFinite:
-        value = None
-    return Constant(None if value is None else value.factor)
+        return Constant(None)
+
+
+def _known(value: Value | None) -> Constant:
+    return Constant(None if value is None or isinstance(value, Result) else np.broadcast_to(value, 3))
 
 
 def _own(use: NodeUse, socket: Any) -> Constant:
     if socket is None:
         return Constant(np.zeros(3))
     try:
-        return Constant(own_value(use, socket).factor)
+        return Constant(own_value(use, socket))
     except NotFinite:
         return Constant(None)
 
 
-def _as_kinds(use: NodeUse, constant: Constant, kinds: tuple[str, ...]) -> Constant:
-    return (
-        constant
-        if constant.value is None
-        else Constant(converted(calculator(use), Value(constant.value), kinds).factor)
-    )
+def _as_kinds(use: NodeUse, given: Constant, kinds: tuple[str, ...]) -> Constant:
+    if given.value is None or not kinds:
+        return given
+    return _known(Reader(use.owner.kind).converted(constant(given.value, kind_of_socket(kinds[0])), kinds))
 
 
 def _place(use: NodeUse) -> Place:
