@@ -140,6 +140,17 @@ def uvs(mesh: Any, name: str = "") -> np.ndarray | None:
     return _raw_or_foreach(layer.data, "uv", 2, np.float32)
 
 
+def packed_file(image: Any, tile: int | None) -> Any:
+    """The file that is packed in an image, or that of this UDIM tile; None: it is not packed."""
+    files = image.packed_files
+    if tile is None:
+        return files[0].packed_file
+    if VERSION < (3, 5, 0):  # tells no numbers; the files are in the order of the tiles
+        numbers = [t.number for t in image.tiles]
+        return files[numbers.index(tile)].packed_file if numbers.index(tile) < len(files) else None
+    return next((f.packed_file for f in files if f.tile_number == tile), None)
+
+
 def attribute_values(attribute: Any, name: str, width: int) -> np.ndarray:
     """(n,) or (n, width) float32."""
     kinds: dict[str, type] = {"INT": np.int32, "INT8": np.int8, "BOOLEAN": bool}

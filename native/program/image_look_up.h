@@ -40,7 +40,7 @@ struct ImageUse {
 
   ColorAlpha at(const TextureAccess& access, Vec2f uv) const {
     if (tiles.empty()) return lookUp(access, textures[texture], uv, unassociate);
-    const float column = std::floor(uv.x), row = std::floor(uv.y);
+    const float column = std::trunc(uv.x), row = std::trunc(uv.y);  // as Cycles: the first tiles go on below 0
     constexpr ColorAlpha kMissing{{1, 0, 1}, 1};
     if (!(column >= 0 && column < 10 && row >= 0 && row < 1000)) return kMissing;
     const uint32_t number = 1001 + static_cast<uint32_t>(column) + 10 * static_cast<uint32_t>(row);

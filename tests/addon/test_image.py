@@ -129,14 +129,23 @@ class Images(unittest.TestCase):
         self.assertIn("is not supported", Picture(image).deviations()[0])
         self.assertEqual(export_image(Picture(image)).color_space, "sRGB")
 
-    def test_moving_and_tiled_images_are_noted(self):
+    def test_movies_are_noted(self):
         image = self.generated(is_float=False)
         image.source = "MOVIE"
         self.assertIn("movies", Picture(image).deviations()[0])
+
+    def test_tiles_beyond_the_first_are_files(self):
+        """Of which Blender tells no pixels."""
         tiled = bpy.data.images.new("Tiled", 2, 2, tiled=True)
         self.addCleanup(lambda: bpy.data.images.remove(tiled))
-        tiled.tiles.new(1002)
-        self.assertIn("1001", Picture(tiled).deviations()[0])
+        tiled.tiles.new(1012)
+        self.assertEqual(export_image(Picture(tiled, tile=1001)).pixels.shape[:2], (2, 2))
+        self.assertIn("tile 1012", Picture(tiled, tile=1012).missing())
+        self.assertIn("save", Picture(tiled, tile=1012).missing())
+        tiled.filepath = "//a.<UDIM>.png"
+        self.assertTrue(Picture(tiled, tile=1012).path.endswith("a.1012.png"))
+        tiled.filepath = "//a.<UVTILE>.png"
+        self.assertTrue(Picture(tiled, tile=1012).path.endswith("a.u2_v2.png"))
 
     def test_render_result_cannot_be_a_texture(self):
         viewer = SimpleNamespace(

@@ -53,6 +53,7 @@ class Picture:
     alpha: str = "kept"
     divided: bool = False
     frame: int | None = None  # of a sequence
+    tile: int | None = None  # of UDIM; None: the first
 
     @property
     def name(self) -> str:
@@ -61,7 +62,7 @@ class Picture:
     @property
     def name_full(self) -> str:
         """Unlike all other pictures'. The library is part of it: two linked images may be called the same."""
-        return f"{self.image.name_full} {self.alpha} {self.frame}"
+        return f"{self.image.name_full} {self.alpha} {self.frame} {self.tile}"
 
     @property
     def is_encoded(self) -> bool:
@@ -76,9 +77,18 @@ class Picture:
     def path(self) -> str:
         path = self.image.filepath
         if self.image.source == "TILED":
-            path = path.replace("<UDIM>", str(self.image.tiles[0].number))
+            path = path_of_tile(path, self.image.tiles[0].number, self._tile)
         path = bpy.path.abspath(path, library=self.image.library)
         return str(path) if self.frame is None else path_of_frame(path, self.frame)
+
+    @property
+    def _tile(self) -> int:
+        return self.image.tiles[0].number if self.tile is None else self.tile
+
+    @property
+    def _is_later_tile(self) -> bool:
+        """Whether Blender does not give its pixels: it does of the first tile alone."""
+        return self.image.source == "TILED" and self._tile != self.image.tiles[0].number
 
     @property
     def mime_type(self) -> str:
@@ -111,7 +121,8 @@ class Picture:
         if self.missing():
             return ImageData(self.name, "linear", pixels=np.array([[MISSING]], np.float32))
         mime_type = self.mime_type
-        readable = self.image.colorspace_settings.name in COLOR_SPACES
+        # of later tiles there are no pixels; deviations() names their colour space
+        readable = self.image.colorspace_settings.name in COLOR_SPACES or self._is_later_tile
         if mime_type and readable:
             return ImageData(
                 self.name,
@@ -144,6 +155,13 @@ class Picture:
                 return f"its file '{path}' is {kind}"
             if self.frame is not None and self.mime_type:
                 return None  # Blender may not have looked at it
+        if self._is_later_tile:
+            if self.mime_type:
+                return None
+            if image.is_dirty or not image.filepath:
+                return f"its tile {self._tile} is no file; save the image"
+            kind = "no PNG, JPEG or EXR file" if os.path.isfile(path) else "missing"
+            return f"'{path}' of its tile {self._tile} is {kind}"
         if 0 in image.size:  # Blender has tried: a damaged file, too, is better found here than by the renderer
             return f"it cannot be read from '{path}'"
         return None
@@ -155,8 +173,6 @@ class Picture:
         space = image.colorspace_settings.name
         if space not in COLOR_SPACES and not image.is_float:
             found.append(f"colour space '{space}' is not supported; its colours are read as sRGB")
-        if image.source == "TILED" and len(image.tiles) > 1:
-            found.append(f"UDIM tiles are not supported; tile {image.tiles[0].number} is used everywhere")
         if image.source == "MOVIE":
             found.append("movies are not supported; the picture that Blender holds now is used")
         if image.source == "SEQUENCE" and not self.mime_type:
@@ -168,7 +184,8 @@ class Picture:
     def _file(self, size: int = -1) -> bytes:
         """The first bytes, or all, of the file on disk or packed."""
         if self.image.packed_files:
-            content = bytes(self.image.packed_files[0].packed_file.data)
+            packed = compat.packed_file(self.image, self._tile if self.image.source == "TILED" else None)
+            content = b"" if packed is None else bytes(packed.data)
             return content[:size] if size >= 0 else content
         try:
             with open(self.path, "rb") as file:
@@ -245,6 +262,15 @@ def path_of_frame(path: str, frame: int) -> str:
     if number is None:
         return path
     return os.path.join(folder, f"{name[: number.start()]}{frame:0{len(number[1])}}{name[number.end() :]}")
+
+
+def path_of_tile(path: str, first: int, number: int) -> str:
+    """The path of a UDIM tile. Without a token in the name, `path` is that of tile `first`."""
+    folder, name = os.path.split(path)
+    u, v = (number - 1001) % 10 + 1, (number - 1001) // 10 + 1
+    if "<UDIM>" not in name and "<UVTILE>" not in name:
+        name = name.replace(str(first), "<UDIM>")
+    return os.path.join(folder, name.replace("<UDIM>", str(number)).replace("<UVTILE>", f"u{u}_v{v}"))
 
 
 def export_image(image: Picture | Pixels) -> ImageData:

@@ -362,6 +362,45 @@ def udim_of_one_tile():
     shows(picture)
 
 
+def tiled(*numbers):
+    """An image of UDIM tiles of different colours."""
+    made = [(n, saved_image(f"tiles.{n}", gradient(8, 8) * (0.3 + 0.2 * k))) for k, n in enumerate(numbers)]
+    for _, each in made:
+        bpy.data.images.remove(each)
+    picture = bpy.data.images.load(f"{bpy.app.tempdir}/tiles.{numbers[0]}.png")
+    picture.source, picture.filepath = "TILED", f"{bpy.app.tempdir}/tiles.<UDIM>.png"
+    for number in numbers[1:]:
+        picture.tiles.new(number)
+    return picture
+
+
+def over_tiles(picture):
+    """UVs from -0.3 to 2.2: beside the tiles, too."""
+    face_on()
+
+    def build(tree):
+        moved = add(
+            tree, "Mapping", Vector=add(tree, "TexCoord").outputs["UV"], Location=(-0.3, -0.3, 0), Scale=(2.5, 2.5, 1)
+        )
+        node = texture(tree, picture)
+        tree.links.new(moved.outputs[0], node.inputs[0])
+        return node.outputs["Color"]
+
+    sheet(painted(build))
+
+
+@scene
+def udim():
+    over_tiles(tiled(1001, 1002, 1012))
+
+
+@scene
+def udim_packed():
+    picture = tiled(1001, 1011, 1012)
+    picture.pack()
+    over_tiles(picture)
+
+
 @scene
 def generated():
     """Blender's own grid of colours."""

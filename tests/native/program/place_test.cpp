@@ -327,7 +327,9 @@ TEST(Place, Images) {
   at("image", {0.3, 0.6, 0}, {1, 1, 0.5}, tiles);
   at("image", {1.3, 1.6, 0}, {7, 8, 9}, tiles);
   at("image", {1.3, 0.6, 0}, {1, 0, 1}, tiles);
-  at("image-alpha", {-0.3, 0.6, 0}, {1}, tiles);
+  at("image-alpha", {1.3, 0.6, 0}, {1}, tiles);
+  at("image", {-0.3, 0.6, 0}, {2, 1, 0.5}, tiles);  // tile 1001 goes on, as in Cycles
+  at("image", {-1.3, 0.6, 0}, {1, 0, 1}, tiles);
   // from the middle of the cube: towards +x, u = 1/4; v = 1/2 at the equator; up on the side of -y, u = 0 or 1
   at("image", {1, 0.5, 0.6}, {1, 1, 0.5}, {{"projection", "sphere"}});
   at("image", {0.5, 0.9, 0.4}, {2, 0, 0.5}, {{"projection", "sphere"}});

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from ..image import MISSING, Picture, picture_of
@@ -18,10 +19,12 @@ def _image(use: NodeUse, output: Any, p: Reader) -> Value:
     found = _picture(use, p.is_light)
     if found is None:
         return _missing(output, p.is_light)
-    parameters = _texture(use, found, node.extension)
+    tiled = node.image.source == "TILED" and node.projection != "BOX"
+    parameters = _texture(use, found, node.extension, tiled)
     vector = coordinates(use, p, "uv")
     alpha = "-alpha" if output.name == "Alpha" else ""
     if node.projection == "BOX":
+        _note_first_tile(use)
         return p(f"image-box{alpha}", vector, p("object-normal"), blend=node.projection_blend, **parameters)
     projection = {} if node.projection == "FLAT" else {"projection": node.projection.lower()}
     return p(f"image{alpha}", vector, **projection, **parameters)
@@ -33,6 +36,7 @@ def _environment(use: NodeUse, output: Any, p: Reader) -> Value:
         return _missing(output, p.is_light)
     projection = {} if use.node.projection == "EQUIRECTANGULAR" else {"projection": "mirror-ball"}
     alpha = "-alpha" if output.name == "Alpha" else ""
+    _note_first_tile(use)
     parameters = _texture(use, found, "REPEAT")
     return p(f"environment{alpha}", coordinates(use, p, "position"), **projection, **parameters)
 
@@ -65,9 +69,28 @@ def _shows_alpha(use: NodeUse) -> bool:
     return bool(foldings[key].shows_alpha(use))
 
 
-def _texture(use: NodeUse, found: Picture, extension: str) -> dict[str, Any]:
-    index = use.owner.context.texture(found, use.node.interpolation, extension)
-    return {"texture": index} | ({"unassociate": True} if found.divided else {})
+def _texture(use: NodeUse, found: Picture, extension: str, tiled: bool = False) -> dict[str, Any]:
+    def index(picture: Picture) -> int:
+        return use.owner.context.texture(picture, use.node.interpolation, extension)
+
+    texture: Any = index(found) if not tiled else tuple((tile.tile, index(tile)) for tile in _tiles(use, found))
+    return {"texture": texture} | ({"unassociate": True} if found.divided else {})
+
+
+def _tiles(use: NodeUse, found: Picture) -> list[Picture]:
+    """Those that the image has; what is elsewhere is magenta, as in Cycles."""
+    tiles = [replace(found, tile=tile.number) for tile in found.image.tiles]
+    for tile in tiles:
+        reason = tile.missing()
+        if reason is not None:
+            use.note(f"has a tile that cannot be shown; {reason}; magenta is shown instead")
+    return tiles
+
+
+def _note_first_tile(use: NodeUse) -> None:
+    image = use.node.image
+    if image.source == "TILED" and len(image.tiles) > 1:
+        use.note(f"shows tile {image.tiles[0].number} of image '{image.name}' alone, as in Cycles")
 
 
 UNKNOWN_LIGHT = (0.5, 0.5, 0.5)  # whose image cannot be shown
