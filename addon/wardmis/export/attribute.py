@@ -13,6 +13,11 @@ from .. import compat
 
 DEFAULT_COLOR = "color:"  # the name of a mesh's colours that are active for rendering
 OF_OBJECT = ("object:", "instancer:", "layer:")  # how names of attributes begin that are not the mesh's
+# what the nodes Curves Info and Point Info tell: names of attributes that no file can have by chance
+STRAND, INTERCEPT, LENGTH, DIAMETER, RANDOM = (
+    f"curves info:{name}" for name in ("strand", "intercept", "length", "diameter", "random")
+)
+CENTER, RADIUS, POINT_RANDOM = (f"point info:{name}" for name in ("position", "radius", "random"))
 
 # how Blender calls the values of each type that Cycles reads, and how many numbers they are
 TYPES = {

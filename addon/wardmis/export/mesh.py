@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from .. import compat
-from .attribute import generated, read_attribute
+from .attribute import CENTER, RADIUS, generated, read_attribute
 from .context import ExportContext, ExportError
 from .model import MaterialData, MeshData, PrimitiveData
 from .tangent import shared_tangents
@@ -161,6 +161,6 @@ def transformed(mesh: MeshData, linear: np.ndarray) -> MeshData:
     positions = (mesh.positions.astype(np.float64) @ linear.T).astype(np.float32)
     if mesh.radii is None:
         return replace(mesh, positions=positions, normals=None, tangents={})
-    return replace(
-        mesh, positions=positions, radii=(mesh.radii * np.cbrt(abs(np.linalg.det(linear)))).astype(np.float32)
-    )
+    radii = (mesh.radii * np.cbrt(abs(np.linalg.det(linear)))).astype(np.float32)
+    told = {name: values for name, values in ((CENTER, positions), (RADIUS, radii)) if name in mesh.attributes}
+    return replace(mesh, positions=positions, radii=radii, attributes=mesh.attributes | told)

@@ -11,18 +11,13 @@ from typing import Any
 import numpy as np
 
 from .. import compat
-from .attribute import TYPES
+from .attribute import CENTER, DIAMETER, INTERCEPT, LENGTH, POINT_RANDOM, RADIUS, RANDOM, STRAND, TYPES
 from .context import ExportContext, ExportError
 from .hashing import random_numbers
 from .mesh import Geometry, Wanted
 
 MOST_PIECES = 16  # Embree's limit
 SHAPES = {"RIBBONS": "ribbons", "THICK": "tubes", "THICK_LINEAR": "cones"}
-# what the nodes Curves Info and Point Info tell: names of attributes that no file can have by chance
-STRAND, INTERCEPT, LENGTH, DIAMETER, RANDOM = (
-    f"curves info:{name}" for name in ("strand", "intercept", "length", "diameter", "random")
-)
-CENTER, RADIUS, POINT_RANDOM = (f"point info:{name}" for name in ("position", "radius", "random"))
 
 
 def curve_settings(scene: Any) -> tuple[str, int]:

@@ -4,6 +4,7 @@
 import bpy
 import numpy as np
 from stage import (
+    add,
     ball,
     camera,
     collection,
@@ -11,6 +12,7 @@ from stage import (
     floor,
     instance,
     mesh,
+    painted,
     place,
     scene,
     sky,
@@ -111,19 +113,66 @@ def curves_tubes():
     instance(group, (1.2, -0.5, 0.2), (0, 0.4, 0), (0.6, 0.9, -0.7))
 
 
+def told(kind, **scales):
+    """A diffuse material whose colour is numbers of an info node, each scaled."""
+
+    def build(tree):
+        node = add(tree, kind)
+        numbers = [add(tree, "Math", {"operation": "MULTIPLY"}, Value=node.outputs[name]) for name in scales]
+        for number, scale in zip(numbers, scales.values()):
+            number.inputs[1].default_value = scale
+        color = tree.nodes.new("ShaderNodeCombineXYZ")
+        for part, number in zip(color.inputs, numbers):
+            tree.links.new(number.outputs[0], part)
+        return color.outputs[0]
+
+    return painted(build)
+
+
 @scene
-def points():
+def curves_info():
+    """On ribbons: at the open ends of tubes Cycles 4.3 is darker than 3.4 and 5.2, as far as their width is seen (15 % of a block)."""
+    sunny()
+    shape("RIBBONS")
+    loops(0.03, told("HairInfo", Intercept=0.8, Length=0.1, Random=0.8))
+
+
+@scene
+def curves_info_of_hair():
+    """On what is no hair all is 0."""
+    sunny()
+    shape("THICK")
+    furry(told("HairInfo", **{"Intercept": 0.8, "Thickness": 8, "Is Strand": 0.5}))
+    ball(told("HairInfo", **{"Is Strand": 0.5}), location=(0, 0, 1.6), radius=0.3)
+
+
+@scene
+def point_info():
+    points(told("PointInfo", Random=0.9, Radius=3), radius=0.14)
+
+
+@scene
+def point_info_place():
+    points(painted(lambda tree: add(tree, "PointInfo").outputs["Position"]), radius=0.14)
+
+
+def points(of, radius):
     stage()
     made = ball(location=(0, 0, 1.2), fineness=6)
 
     def build(tree, geometry):
         cloud = tree.nodes.new("GeometryNodeMeshToPoints")
         paint = tree.nodes.new("GeometryNodeSetMaterial")
-        paint.inputs["Material"].default_value = diffuse((0.7, 0.3, 0.3))
-        cloud.inputs["Radius"].default_value = 0.14
+        paint.inputs["Material"].default_value = of
+        cloud.inputs["Radius"].default_value = radius
         tree.links.new(geometry, cloud.inputs["Mesh"])
         tree.links.new(cloud.outputs[0], paint.inputs["Geometry"])
         return paint.outputs[0]
 
     geometry_nodes(made, build)
     made.scale = 1.5, 1, 0.8
+
+
+@scene
+def point_cloud():
+    points(diffuse((0.7, 0.3, 0.3)), radius=0.14)

@@ -3,12 +3,23 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import bpy
 
 from ... import compat
-from ..attribute import DEFAULT_COLOR
+from ..attribute import (
+    CENTER,
+    DEFAULT_COLOR,
+    DIAMETER,
+    INTERCEPT,
+    LENGTH,
+    POINT_RANDOM,
+    RADIUS,
+    RANDOM,
+    STRAND,
+)
 from ..socket_value import own_value
 from ..tree import NodeUse
 from .builder import Value, constant, is_zero
@@ -155,6 +166,32 @@ def _object_info(use: NodeUse, output: Any, p: Reader) -> Value | None:
     return _by_output(OBJECT)(use, output, p)  # type: ignore[no-any-return]
 
 
+CURVES = {"Is Strand": STRAND, "Intercept": INTERCEPT, "Length": LENGTH, "Thickness": DIAMETER, "Random": RANDOM}
+
+
+def _curves_info(_use: NodeUse, output: Any, p: Reader) -> Value | None:
+    """0 where there is no curve."""
+    name = CURVES.get(output.name)
+    return None if name is None else p.place("attribute-number", name=name)
+
+
+def _point_info(_use: NodeUse, output: Any, p: Reader) -> Value | None:
+    if output.name == "Random":
+        return p.place("attribute-number", name=POINT_RANDOM)
+    if output.name == "Position":
+        return _of_object(p, p.place("attribute", name=CENTER), "point")
+    if output.name != "Radius":
+        return None
+    share = p.multiply(p.place("attribute-number", name=RADIUS), 1.0 / math.sqrt(3.0))  # along each axis
+    return p("vector-length", _of_object(p, p("combine", share, share, share), "vector"))
+
+
+def _of_object(p: Reader, vector: Value, kind: str) -> Value:
+    """In the world."""
+    parameters = {"type": kind, "from": "object", "to": "world"}
+    return p("vector-transform", vector, **parameters, version=compat.CYCLES)
+
+
 CAMERA = {"View Vector": "view-vector", "View Z Depth": "view-depth", "View Distance": "view-distance"}
 
 
@@ -225,6 +262,8 @@ NODES = {
     "ObjectInfo": _object_info,
     "LightPath": _light_path,
     "CameraData": _by_output(CAMERA),
+    "HairInfo": _curves_info,
+    "PointInfo": _point_info,
     "Fresnel": _fresnel,
     "LayerWeight": _layer_weight,
     "LightFalloff": _light_falloff,
