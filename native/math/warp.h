@@ -16,6 +16,16 @@ Vec2<T> toDisk(Vec2<T> u) {
   return {r * c, r * s};
 }
 
+// On the unit disk, as densely as a cone over it is high. Density 3 (1 - r)/pi.
+template <class T>
+Vec2<T> toConeOverDisk(Vec2<T> u) {
+  // r^2 (3 - 2r) = u
+  const T r = T(0.5) - std::sin(std::asin(T(1) - T(2) * u.x) / T(3));
+  T s, c;
+  sincos2Pi(u.y, s, c);
+  return {r * c, r * s};
+}
+
 // Cosine-weighted on the upper hemisphere. Density cos/pi per solid angle.
 template <class T>
 Vec3<T> toCosineHemisphere(Vec2<T> u) {

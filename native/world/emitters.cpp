@@ -103,32 +103,6 @@ class TriangleLuminance {
   std::vector<double> means_;                      // luminance of each texture's image; < 0: not known yet
 };
 
-// The rectangle seen from a point, for sampling its solid angle (Urena, Fajardo and King 2013, "An area-preserving
-// parametrization for spherical rectangles").
-struct SphericalRectangle {
-  float x0, x1, y0, y1, z0, b0, b1, k, solidAngle;
-
-  SphericalRectangle(float ax, float bx, float ay, float by, float z) : x0(ax), x1(bx), y0(ay), y1(by), z0(z) {
-    const float z2 = z0 * z0;
-    const float n0 = -y0 / std::sqrt(z2 + y0 * y0), n1 = x1 / std::sqrt(z2 + x1 * x1);
-    const float n2 = y1 / std::sqrt(z2 + y1 * y1), n3 = -x0 / std::sqrt(z2 + x0 * x0);
-    b0 = n0, b1 = n2;
-    k = 2 * kPif - std::acos(-n2 * n3) - std::acos(-n3 * n0);
-    solidAngle = std::acos(-n0 * n1) + std::acos(-n1 * n2) - k;
-  }
-  Vec2f sample(Vec2f u) const {
-    const float a = u.x * solidAngle + k;
-    const float f = (std::cos(a) * b0 - b1) / std::sin(a);
-    const float c = std::clamp(std::copysign(1 / std::sqrt(f * f + b0 * b0), f), -1.0f, 1.0f);
-    const float x = std::clamp(-(c * z0) / std::sqrt(std::max(1e-20f, 1 - c * c)), x0, x1);
-    const float d2 = x * x + z0 * z0;
-    const float h0 = y0 / std::sqrt(d2 + y0 * y0), h1 = y1 / std::sqrt(d2 + y1 * y1);
-    const float h = h0 + u.y * (h1 - h0);
-    const float y = h * h < 1 - 1e-6f ? h * std::sqrt(d2) / std::sqrt(1 - h * h) : y1;
-    return {x, std::clamp(y, y0, y1)};
-  }
-};
-
 }  // namespace
 
 Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Environment>& environments)
@@ -148,26 +122,10 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Env
     double w = 0;
     switch (light.type) {
       case LightType::kArea: {
-        l.kind = light.ellipse ? Kind::kEllipse : Kind::kRectangle;
-        l.halfX = light.toWorld.x * (0.5f * light.sizeX);
-        l.halfY = light.toWorld.y * (0.5f * light.sizeY);
-        const Vec3f n = cross(l.halfX, l.halfY);
-        if (!(dot(n, n) > 0)) continue;  // without area
-        l.normal = normalize(n);
-        if (dot(l.normal, light.toWorld.z) > 0) l.normal = -l.normal;  // emits along -z
-        l.axis = normalize(-light.toWorld.z);
-        l.tilted = dot(l.axis, l.normal) < 1 - 1e-6f;
-        if (!l.tilted) l.axis = l.normal;
-        l.area = length(n) * (light.ellipse ? kPif : 4.0f);
-        l.spread = light.spread < kPif - 1e-4f;
-        if (l.spread) {
-          const double h = 0.5 * light.spread;
-          l.spreadTan = std::tan(static_cast<float>(h));
-          // of a narrow one the two are nearly equal: by their series
-          const double difference = h < 0.01 ? h * h * h * (1.0 / 3 + h * h * (2.0 / 15)) : std::tan(h) - h;
-          l.spreadScale = static_cast<float>(1 / difference);
-        }
-        w = intensity * l.area * kPif;
+        l.kind = Kind::kArea;
+        l.plane = AreaLamp(light);
+        if (!(l.plane.area() > 0)) continue;
+        w = intensity * l.plane.area() * kPif;
         break;
       }
       case LightType::kPoint:
@@ -266,26 +224,10 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Env
   table_ = AliasTable(power);
 }
 
-float Emitters::cosine(const Lamp& lamp, Vec3f d) {
-  const float c = dot(d, lamp.normal);
-  if (!lamp.tilted) return c;
-  return dot(d, lamp.axis) > 0 ? std::abs(c) : 0;
-}
-
 // Radiance (finite lights) or intensity (delta lights) leaving in unit direction d.
 Rgb Emitters::profile(const Lamp& lamp, Vec3f d) {
   float f = 1;
-  if (lamp.tilted) {  // as Cycles has it, the light falls off by the angle to the axis, whatever the plane
-    const float plane = cosine(lamp, d);
-    if (!(plane > 0)) return {0, 0, 0};
-    f = dot(d, lamp.axis) / plane;
-  }
-  if (lamp.spread) {  // area light of limited spread: Cycles' formula
-    const float cosA = dot(d, lamp.axis);
-    if (!(cosA > 0)) return {0, 0, 0};
-    const float tanA = length(cross(d, lamp.axis)) / cosA;  // its sine from the cosine is nothing below 3e-4
-    f *= std::max(0.0f, (lamp.spreadTan - tanA) * lamp.spreadScale);
-  }
+  if (lamp.kind == Kind::kArea) return lamp.emitted * lamp.plane.profile(d);
   if (lamp.spot) {
     const Vec3f local = lamp.toLocal.inverseVector(d);
     const float c = -local.z / length(local);
@@ -297,62 +239,11 @@ Rgb Emitters::profile(const Lamp& lamp, Vec3f d) {
   return lamp.emitted * f;
 }
 
-// Whether points of a rectangle are sampled, not directions: seen small, where the solid angle would be lost to
-// cancellation (and the two hardly differ), and where it is no rectangle.
-bool Emitters::sampledByArea(const Lamp& lamp, float height, float d2) {
-  return lamp.tilted || lamp.area * height < 0.05f * d2 * std::sqrt(d2) ||
-         std::abs(dot(lamp.halfX, lamp.halfY)) > 1e-4f * length(lamp.halfX) * length(lamp.halfY);
-}
-
-LightSample Emitters::sampleRectangle(const Lamp& lamp, Vec3f from, Vec2f u) const {
-  LightSample s;
-  const Vec3f toCenter = lamp.center - from;
-  const float height = -dot(toCenter, lamp.normal);  // of the point above the light's plane
-  if (!(height > 0) && !lamp.tilted) return s;
-  const float d2 = dot(toCenter, toCenter);
-  Vec3f offset;
-  float pdf;
-  const float lx = length(lamp.halfX), ly = length(lamp.halfY);
-  if (sampledByArea(lamp, height, d2)) {
-    offset = lamp.halfX * (2 * u.x - 1) + lamp.halfY * (2 * u.y - 1);
-    pdf = 0;
-  } else {
-    const Vec3f ex = lamp.halfX / lx, ey = lamp.halfY / ly;
-    const float cx = dot(toCenter, ex), cy = dot(toCenter, ey);
-    const SphericalRectangle q(cx - lx, cx + lx, cy - ly, cy + ly, -height);
-    const Vec2f p = q.sample(u);
-    offset = ex * (p.x - cx) + ey * (p.y - cy);
-    pdf = 1 / q.solidAngle;
-    if (!(q.solidAngle > 1e-4f)) return s;
-  }
-  const Vec3f to = toCenter + offset;
-  const float t2 = dot(to, to);
-  s.distance = std::sqrt(t2);
-  s.direction = to / s.distance;
-  const float cosLight = cosine(lamp, -s.direction);
-  if (!(cosLight > 0)) return s;
-  s.pdf = pdf > 0 ? pdf : t2 / (cosLight * lamp.area);
-  s.radiance = profile(lamp, -s.direction);
-  return s;
-}
-
-float Emitters::pdfRectangle(const Lamp& lamp, Vec3f from, float t, float cosLight) const {
-  const Vec3f toCenter = lamp.center - from;
-  const float height = -dot(toCenter, lamp.normal);
-  const float d2 = dot(toCenter, toCenter);
-  if (sampledByArea(lamp, height, d2)) return t * t / (cosLight * lamp.area);
-  const float lx = length(lamp.halfX), ly = length(lamp.halfY);
-  const float cx = dot(toCenter, lamp.halfX) / lx, cy = dot(toCenter, lamp.halfY) / ly;
-  const SphericalRectangle q(cx - lx, cx + lx, cy - ly, cy + ly, -height);
-  return q.solidAngle > 1e-4f ? 1 / q.solidAngle : 0;
-}
-
 Rgb Emitters::factor(const Lamp& lamp, Vec3f from, Vec3f d, float t, int bounces) const {
   LitPoint p{from + d * t, -d, -d, t, bounces};
   switch (lamp.kind) {
-    case Kind::kRectangle:
-    case Kind::kEllipse:
-      p.normal = lamp.normal;
+    case Kind::kArea:
+      p.normal = lamp.plane.normal();
       break;
     case Kind::kSphere:
       p.normal = safeNormalize(p.position - lamp.center);
@@ -382,13 +273,13 @@ double Emitters::meanFactor(const Lamp& lamp, float distance) const {
     Vec3f position = lamp.center;
     if (lamp.kind == Kind::kDeltaSun || lamp.kind == Kind::kSunCone || lamp.kind == Kind::kSunDisk) {
       d = -lamp.center;
-    } else if (lamp.area > 0) {
+    } else if (lamp.kind == Kind::kArea) {
       const float a = 2 * fraction(0.754877666f * static_cast<float>(i)) - 1;
       const float b = 2 * fraction(0.569840291f * static_cast<float>(i)) - 1;
-      position += (lamp.halfX * a + lamp.halfY * b) * (lamp.kind == Kind::kEllipse ? 0.7f : 1.0f);
+      const float within = lamp.plane.ellipse() ? 0.7f : 1.0f;
+      position = lamp.plane.at(a * within, b * within);
     }
-    const bool plane = lamp.kind == Kind::kRectangle || lamp.kind == Kind::kEllipse;
-    const float cosLight = plane ? cosine(lamp, d) : 1;
+    const float cosLight = lamp.kind == Kind::kArea ? lamp.plane.cosine(d) : 1;
     if (!(cosLight > 0)) continue;
     const double here = double(strength(profile(lamp, d)) * cosLight);
     const double given = double(strength(factor(lamp, position + d * distance, -d, distance, 0)));
@@ -440,18 +331,10 @@ LightSample Emitters::sample(Vec3f from, ChoicePoint point, int bounces, float t
   const Lamp& lamp = lamps_[index];
   if (bounces > lamp.maxBounces) return s;
   switch (lamp.kind) {
-    case Kind::kRectangle:
-      s = sampleRectangle(lamp, from, u);
-      break;
-    case Kind::kEllipse: {
-      const Vec2f d = toDisk(u);
-      const Vec3f to = lamp.center + lamp.halfX * d.x + lamp.halfY * d.y - from;
-      const float t2 = dot(to, to);
-      s.distance = std::sqrt(t2);
-      s.direction = to / s.distance;
-      const float cosLight = cosine(lamp, -s.direction);
-      if (!(cosLight > 0)) return s;
-      s.pdf = t2 / (cosLight * lamp.area);
+    case Kind::kArea: {
+      const AreaLamp::Sample on = lamp.plane.sample(from, u);
+      if (!(on.pdf > 0)) return s;
+      s.direction = on.direction, s.distance = on.distance, s.pdf = on.pdf;
       s.radiance = profile(lamp, -s.direction);
       break;
     }
@@ -540,24 +423,12 @@ bool Emitters::meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax,
   if ((lamp.visibility & seers) == 0) return false;
   float pdf = 0, t = kFar;
   switch (lamp.kind) {
-    case Kind::kRectangle:
-    case Kind::kEllipse: {
-      const float cosLight = cosine(lamp, -d);
-      if (!(cosLight > 0)) return false;  // one-sided
-      const Vec3f toCenter = lamp.center - ray.origin;
-      t = dot(toCenter, lamp.normal) / dot(d, lamp.normal);
+    case Kind::kArea:
+      t = lamp.plane.meet(ray.origin, d);
       if (!(t > ray.tMin) || !(t < tMax)) return false;
-      const Vec3f p = d * t - toCenter;
-      // solve p = a halfX + b halfY in the plane (the axes need not be orthogonal)
-      const Vec3f n = cross(lamp.halfX, lamp.halfY);
-      const float n2 = dot(n, n);
-      const float a = dot(cross(p, lamp.halfY), n) / n2, b = dot(cross(lamp.halfX, p), n) / n2;
-      if (lamp.kind == Kind::kRectangle ? std::max(std::abs(a), std::abs(b)) > 1 : a * a + b * b > 1) return false;
-      pdf =
-          lamp.kind == Kind::kRectangle ? pdfRectangle(lamp, ray.origin, t, cosLight) : t * t / (cosLight * lamp.area);
+      pdf = lamp.plane.pdf(ray.origin, d, t);
       hit.radiance = profile(lamp, -d);
       break;
-    }
     case Kind::kFacingDisk: {
       const Vec3f toCenter = lamp.center - ray.origin;
       const float d2 = dot(toCenter, toCenter), along = dot(d, toCenter);

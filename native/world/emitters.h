@@ -8,6 +8,7 @@
 
 #include "world/accel.h"
 #include "world/alias.h"
+#include "world/area_lamp.h"
 #include "world/environment.h"
 
 namespace wardmis {
@@ -61,30 +62,16 @@ class Emitters {
   float trianglePdf(const Placement& p, const Hit& hit, Vec3f direction, float time = kMiddle) const;
 
  private:
-  enum class Kind : uint8_t {
-    kRectangle,
-    kEllipse,
-    kFacingDisk,
-    kSphere,
-    kDeltaPoint,
-    kDeltaSun,
-    kSunCone,
-    kSunDisk,
-    kEnvironment
-  };
+  enum class Kind : uint8_t { kArea, kFacingDisk, kSphere, kDeltaPoint, kDeltaSun, kSunCone, kSunDisk, kEnvironment };
   struct Lamp {
     Kind kind;
     Vec3f center{};              // or, for suns, the direction towards it
-    Vec3f halfX{}, halfY{};      // rectangle, ellipse: half axes
-    Vec3f normal{};              // rectangle, ellipse: unit
-    Vec3f axis{};                // rectangle, ellipse: unit; where it looks
-    bool tilted = false;         // axis is not the normal: the light's node is sheared
+    AreaLamp plane;              // of kArea
     float area = 0, radius = 0;  // sun disk: of the disk at distance 1
     float oneMinusCos = 0;       // sun: 1 - cos of the half angle
     Rgb emitted{};               // radiance; point intensity; sun irradiance
     // angular profile
-    float spreadTan = 0, spreadScale = 0;  // spread < pi: t, and 1 / (t - h)
-    bool spread = false, spot = false, cosine = false;
+    bool spot = false, cosine = false;
     float cosHalf = 0, blend = 0;
     Affine toLocal{};  // spot: linear part only
     uint8_t visibility = kSeenByAll;
@@ -96,18 +83,12 @@ class Emitters {
   float probability(size_t emitter) const {
     return table_.empty() ? 0 : table_.probability(static_cast<uint32_t>(emitter));
   }
-  // Rectangle, ellipse: of the angle between its plane's normal and d, which leaves it; not above 0: no light leaves
-  // there.
-  static float cosine(const Lamp& lamp, Vec3f d);
-  static bool sampledByArea(const Lamp& lamp, float height, float d2);
   static Rgb profile(const Lamp& lamp, Vec3f fromLight);  // radiance or intensity in a direction leaving the light
   // What the lamp's program makes of its light in the direction d from a point, t away.
   Rgb factor(const Lamp& lamp, Vec3f from, Vec3f d, float t, int bounces) const;
   // The mean of that over directions, by the light that goes there.
   double meanFactor(const Lamp& lamp, float distance) const;
   bool meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax, int bounces, EmitterHit& hit) const;
-  LightSample sampleRectangle(const Lamp& lamp, Vec3f from, Vec2f u) const;
-  float pdfRectangle(const Lamp& lamp, Vec3f from, float t, float cosLight) const;
 
   const Scene& scene_;
   const Geometry& geometry_;

@@ -54,11 +54,12 @@ struct Fit {
   double mass;  // integral of the density over the grid
 };
 
-// sample() gives a point of the chart, or nothing where the density is zero; density(x, y) is per area of the chart.
-// Outside the grid, and in cells that expect under 5 samples, all counts are pooled into one cell.
-template <class Sample, class Density>
-Fit chiSquare(Sample&& sample, Density&& density, int count, const std::vector<double>& xs,
-              const std::vector<double>& ys) {
+// sample() gives a point of the chart, or nothing where the density is zero; massOf(x0, x1, y0, y1) is the density's
+// integral over a cell. Outside the grid, and in cells that expect under 5 samples, all counts are pooled into one
+// cell.
+template <class Sample, class Mass>
+Fit chiSquareOfCells(Sample&& sample, Mass&& massOf, int count, const std::vector<double>& xs,
+                     const std::vector<double>& ys) {
   const size_t columns = xs.size() - 1, rows = ys.size() - 1;
   std::vector<double> observed(columns * rows, 0);
   double poolObserved = 0;
@@ -74,15 +75,11 @@ Fit chiSquare(Sample&& sample, Density&& density, int count, const std::vector<d
     else
       ++poolObserved;
   }
-  using Quadrature = boost::math::quadrature::gauss_kronrod<double, 15>;
   double mass = 0, statistic = 0, poolExpected = 0;
   int cells = 0;
   for (size_t y = 0; y < rows; ++y)
     for (size_t x = 0; x < columns; ++x) {
-      const auto line = [&](double v) {
-        return Quadrature::integrate([&](double u) { return density(u, v); }, xs[x], xs[x + 1], 5, 1e-6);
-      };
-      const double in = Quadrature::integrate(line, ys[y], ys[y + 1], 5, 1e-6), expected = in * count;
+      const double in = massOf(xs[x], xs[x + 1], ys[y], ys[y + 1]), expected = in * count;
       mass += in;
       if (expected < 5) {
         poolObserved += observed[y * columns + x], poolExpected += expected;
@@ -97,6 +94,20 @@ Fit chiSquare(Sample&& sample, Density&& density, int count, const std::vector<d
   else if (poolObserved > poolExpected + 25)
     return {0, mass};
   return {boost::math::cdf(boost::math::complement(boost::math::chi_squared(std::max(1, cells - 1)), statistic)), mass};
+}
+
+// The same of density(x, y), per area of the chart, which is smooth.
+template <class Sample, class Density>
+Fit chiSquare(Sample&& sample, Density&& density, int count, const std::vector<double>& xs,
+              const std::vector<double>& ys) {
+  using Quadrature = boost::math::quadrature::gauss_kronrod<double, 15>;
+  const auto mass = [&](double x0, double x1, double y0, double y1) {
+    const auto line = [&](double v) {
+      return Quadrature::integrate([&](double u) { return density(u, v); }, x0, x1, 5, 1e-6);
+    };
+    return Quadrature::integrate(line, y0, y1, 5, 1e-6);
+  };
+  return chiSquareOfCells(sample, mass, count, xs, ys);
 }
 
 inline std::vector<double> evenEdges(double lo, double hi, int cells) {

@@ -310,6 +310,74 @@ TEST(Irradiance, NarrowAreaLights) {
   }
 }
 
+// What arrives at the origin of the light of an area lamp above it, by the midpoint rule over the part of the lamp that
+// its spread lets be seen, and what is around that.
+double irradianceOf(const Light& l) {
+  const double h = double(l.spread) / 2, t = std::tan(h), difference = t - h, height = double(l.toWorld.t.z);
+  const double cx = double(l.toWorld.t.x), cy = double(l.toWorld.t.y);
+  const double halfX = double(l.sizeX) / 2, halfY = double(l.sizeY) / 2, reach = height * t;
+  const double x0 = std::max(-reach, cx - halfX), x1 = std::min(reach, cx + halfX);
+  const double y0 = std::max(-reach, cy - halfY), y1 = std::min(reach, cy + halfY);
+  constexpr int kSteps = 1000;
+  double sum = 0;
+  for (int i = 0; i < kSteps; ++i)
+    for (int j = 0; j < kSteps; ++j) {
+      const double x = x0 + (x1 - x0) * (i + 0.5) / kSteps, y = y0 + (y1 - y0) * (j + 0.5) / kSteps;
+      if (l.ellipse && square((x - cx) / halfX) + square((y - cy) / halfY) > 1) continue;
+      const double d2 = x * x + y * y + height * height, tanA = std::hypot(x, y) / height;
+      sum += std::max(0.0, t - tanA) / difference * height * height / (d2 * d2);
+    }
+  return double(l.emitted.x) * sum * (x1 - x0) * (y1 - y0) / square(double(kSteps));
+}
+Light lampOfSpread(bool ellipse, float degrees, Vec3f position) {
+  Light l;
+  l.type = LightType::kArea;
+  l.ellipse = ellipse;
+  l.sizeX = 1, l.sizeY = 0.7f;
+  l.emitted = {2, 2, 2};
+  l.spread = degrees * kPi<float> / 180;
+  l.toWorld.t = position;
+  return l;
+}
+
+// Of a lamp of which a point sees a part alone: all of the cone, a piece of it, none.
+TEST(Irradiance, AreaLightsOfLimitedSpread) {
+  for (const bool ellipse : {false, true})
+    for (const float degrees : {2.0f, 10.0f, 45.0f, 120.0f})
+      for (const Vec3f position :
+           {Vec3f{0.1f, 0.05f, 0.1f}, Vec3f{0.2f, -0.1f, 1.5f}, Vec3f{0.5f, 0.02f, 0.8f}, Vec3f{0.1f, 0.2f, 25}}) {
+        if (degrees < 5 && position.x == 0.5f) continue;  // at the rim, by which a pixel is not alike
+        Scene scene = plane();
+        scene.lights = {lampOfSpread(ellipse, degrees, position)};
+        const double irradiance = irradianceOf(scene.lights[0]);
+        EXPECT_NEAR(radiance(scene) / (irradiance / kPid), 1, 3e-3) << ellipse << ' ' << degrees << ' ' << position.z;
+      }
+  for (const bool ellipse : {false, true}) {
+    Scene scene = plane();
+    scene.lights = {lampOfSpread(ellipse, 5, {0.6f, 0, 0.5f})};
+    EXPECT_EQ(radiance(scene, 16), 0);
+  }
+}
+
+// And by every technique, however the samples are shared and weighted.
+TEST(Irradiance, AreaLightsOfLimitedSpreadByEveryTechnique) {
+  for (const bool ellipse : {false, true}) {
+    Scene scene = plane();
+    scene.lights = {lampOfSpread(ellipse, ellipse ? 45 : 20, {0.2f, -0.1f, 0.6f})};
+    const double irradiance = irradianceOf(scene.lights[0]);
+    for (Allocation allocation :
+         {Allocation::kEqual, Allocation::kSecondMoment, Allocation::kInverseVariance, Allocation::kAuto})
+      for (Weights weights :
+           {Weights::kBalance, Weights::kNonbalance, Weights::kPower, Weights::kCutoff, Weights::kMaximum})
+        for (Integrand integrand : {Integrand::kSplit, Integrand::kJoint}) {
+          RenderSettings s = settings(512);
+          s.allocation = allocation, s.weights = weights, s.integrand = integrand;
+          EXPECT_NEAR(measure(renderScene(scene, s)).mean / (irradiance / kPid), 1, 6e-3)
+              << ellipse << ' ' << name(allocation) << ' ' << name(weights) << ' ' << name(integrand);
+        }
+  }
+}
+
 TEST(Irradiance, EmissiveMesh) {
   Scene scene = plane();
   Material m;
