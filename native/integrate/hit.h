@@ -340,12 +340,13 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       shadow.path.time = x.path.time;
       shadow.left = x.strand;
       if (l.distance < 1e30f) {
-        // up to just before the emitter: from the moved origin to the same point, by way of differences, since the
-        // point itself would be rounded to a place beside or behind the emitter far from the origin
+        // up to the lamp, or to just before the emissive surface: from the moved origin to the same point, by way of
+        // differences, since the point itself would be rounded to a place beside or behind the emitter far from the
+        // origin
         const Vec3f to = l.direction * l.distance - (shadow.origin - x.position);
         const float d = length(to);
         shadow.direction = to / d;
-        shadow.tMax = d * (1 - 1e-4f);
+        shadow.tMax = l.mesh ? d * (1 - 1e-4f) : d;
       }
       Rgb radiance = l.radiance;
       if (l.shadow) {

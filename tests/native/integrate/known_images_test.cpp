@@ -378,6 +378,25 @@ TEST(Irradiance, AreaLightsOfLimitedSpreadByEveryTechnique) {
   }
 }
 
+// A lamp just behind a surface, or within one, does not shine through it, however far away what it would light is.
+TEST(Irradiance, LampsJustBehindASurface) {
+  for (const LightType type : {LightType::kArea, LightType::kPoint})
+    for (const float height : {1.0f, 40.0f}) {
+      Scene scene = plane();
+      addPlane(scene, height, 0, height);
+      scene.camera->toWorld.t = scene.camera->toWorld.z * (0.5f * height);
+      Light l;
+      l.type = type;
+      l.sizeX = l.sizeY = 0.1f * height;
+      l.emitted = {2, 2, 2};
+      l.toWorld.t = {0, 0, height * (1 + 3e-5f)};
+      scene.lights = {l};
+      EXPECT_EQ(radiance(scene, 64), 0) << int(type) << ' ' << height;
+      scene.lights[0].toWorld.t.z = height * (1 - 3e-5f);
+      EXPECT_GT(radiance(scene, 64), 1e-6) << int(type) << ' ' << height;
+    }
+}
+
 TEST(Irradiance, EmissiveMesh) {
   Scene scene = plane();
   Material m;
