@@ -325,6 +325,26 @@ def extremes():
 
 
 @scene
+def just_behind_a_face():
+    """Of three lamps by a ceiling only the one that is below it lights the room: the shadow rays go all the way."""
+    things()
+    ceiling = mesh("Ceiling", [(-3, -3, 0), (3, -3, 0), (3, 3, 0), (-3, 3, 0)], [(0, 1, 2, 3)])
+    ceiling.location = 0, 0, 4
+    lamp("AREA", (0, 0, 4.0002), 100, RED, target=(0, 0, 0), size=1)
+    lamp("AREA", (1, 0, 3.9998), 100, GREEN, target=(1, 0, 0), size=1)
+    lamp("POINT", (0, 1, 4.0002), 100, BLUE)
+
+
+@scene
+def narrow_areas():
+    """A point sees a part of each alone."""
+    things()
+    lamp("AREA", (-1, -1, 4), 100, RED, target=(-1, 0, 0), shape="SQUARE", size=2, spread=math.radians(3))
+    lamp("AREA", (1, -1, 3), 100, GREEN, shape="ELLIPSE", size=1, size_y=2, spread=math.radians(15))
+    lamp("AREA", (0, 2, 3), 100, BLUE, shape="RECTANGLE", size=1, size_y=2, spread=math.radians(50))
+
+
+@scene
 def portal():
     """An area light that is a portal for the sky gives no light of its own."""
     things()
