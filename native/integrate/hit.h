@@ -338,7 +338,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       shadow.kind = kCastsShadow;
       if constexpr (kGeneral) shadow.path = x.path.shadow();
       shadow.path.time = x.path.time;
-      shadow.left = x.strand;
+      shadow.left = x.primitive;
       if (l.distance < 1e30f) {
         // up to the lamp, or to just before the emissive surface: from the moved origin to the same point, by way of
         // differences, since the point itself would be rounded to a place beside or behind the emitter far from the
@@ -346,7 +346,9 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
         const Vec3f to = l.direction * l.distance - (shadow.origin - x.position);
         const float d = length(to);
         shadow.direction = to / d;
-        shadow.tMax = l.mesh ? d * (1 - 1e-4f) : d;
+        shadow.tMax = l.on.valid() ? d * (1 - 1e-4f) : d;
+        if (l.on.valid() && world.accel.shared(l.on)) [[unlikely]]
+          shadow.aimed = l.on, shadow.tMax = d;
       }
       Rgb radiance = l.radiance;
       if (l.shadow) {
@@ -385,7 +387,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     Ray ray;
     ray.origin = x.leave(d);
     ray.direction = d;
-    ray.left = x.strand;
+    ray.left = x.primitive;
     ray.kind = !ahead ? kSeenByTransmission : diffuse ? kSeenByDiffuse : kSeenByGlossy;
     ray.path =
         x.path.scattered(static_cast<uint16_t>((diffuse ? kDiffuseRay : kGlossyRay) | (sharp ? kSingularRay : 0) |

@@ -25,8 +25,8 @@ struct InteractionOf {
   PathState path;  // of the ray that came here
   float rayLength = 0;
 
-  StrandId strand;      // the curve or sphere that it is on
-  float clearance = 0;  // bound on the rounding of `position` and of an intersection there, along the normal
+  PrimitiveId primitive;  // that it is on, where rays that leave must not meet it and may not start beside it
+  float clearance = 0;    // bound on the rounding of `position` and of an intersection there, along the normal
 
   // Start of a ray leaving towards the side of the geometric normal on which `direction` lies, so that it does not
   // meet the surface that it leaves.
@@ -175,7 +175,7 @@ InteractionOf<SurfaceOf<N, K>> interactWith(const Scene& scene, const LobeNumber
     const StrandPoint on = strandPoint(placement, shape, ray, hit);
     x.position = on.position;
     x.geometric = on.normal;
-    x.strand = {hit.placement, hit.shape, shape.strands->strandOf(hit.triangle)};
+    x.primitive = {hit.placement, hit.shape, shape.strands->strandOf(hit.triangle)};
     const Vec2f uv = uvAt(shape, hit);
     const ShadedPoint point{placement, shape,     hit.triangle, hit.u,     hit.v,  x.position,
                             on.facing, on.normal, x.wo,         on.turned, x.path, hit.t};
@@ -204,7 +204,10 @@ InteractionOf<SurfaceOf<N, K>> interactWith(const Scene& scene, const LobeNumber
   const bool turned = dot(ng, x.wo) < 0;
   if (turned) ng = -ng, ns = -ns;
   x.geometric = ng;
-  x.clearance = clearance(placement, corner, ng);
+  if (hit.shared) [[unlikely]]
+    x.primitive = {hit.placement, hit.shape, hit.triangle};
+  else
+    x.clearance = clearance(placement, corner, ng);
   if (!shape.part->normals.empty()) ns = bent(ns, ng, x.wo);
 
   const Vec2f uv = uvAt(shape, hit);

@@ -67,7 +67,7 @@ Hit trace(const RenderScene& world, Ray& ray, uint32_t key, Rgb& weight, Along&&
       }
       weight = weight * x.surface.transparent / q;
       ray.tMin = detail::behind(x, ray.direction, hit.t);
-      ray.left = x.strand;
+      ray.left = x.primitive;
       ray.path = ray.path.passed();
     }
   }
@@ -88,7 +88,7 @@ Rgb transmittance(const RenderScene& world, Ray ray) {
     left *= x.surface.transparent;
     if (!(maxComponent(left) > 0)) return kNone;
     ray.tMin = detail::behind(x, ray.direction, hit.t);
-    ray.left = x.strand;
+    ray.left = x.primitive;
     if (!(ray.tMin < ray.tMax)) return left;
     ray.path = ray.path.passed();
   }

@@ -7,8 +7,15 @@
 #include <embree3/rtcore.h>
 #endif
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+#include <unordered_set>
 
 #include "math/error.h"
+#include "math/random.h"
 
 namespace wardmis {
 namespace {
@@ -18,44 +25,55 @@ namespace {
 #if RTC_VERSION_MAJOR >= 4
 struct Query : RTCRayQueryContext {
   const Ray* ray;
+  void* user;
 };
-void trace(RTCScene scene, RTCRayHit& rh, const Ray& ray) {
+// filter: called for whatever is met, besides the geometries' own; user: for it.
+void trace(RTCScene scene, RTCRayHit& rh, const Ray& ray, RTCFilterFunctionN filter = nullptr, void* user = nullptr) {
   Query query;
   rtcInitRayQueryContext(&query);
-  query.ray = &ray;
+  query.ray = &ray, query.user = user;
   RTCIntersectArguments args;
   rtcInitIntersectArguments(&args);
   args.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
+  if (filter != nullptr)
+    args.filter = filter,
+    args.flags = static_cast<RTCRayQueryFlags>(args.flags | RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER);
   args.context = &query;
   rtcIntersect1(scene, &rh, &args);
 }
-void shadow(RTCScene scene, RTCRay& r, const Ray& ray) {
+void shadow(RTCScene scene, RTCRay& r, const Ray& ray, RTCFilterFunctionN filter = nullptr, void* user = nullptr) {
   Query query;
   rtcInitRayQueryContext(&query);
-  query.ray = &ray;
+  query.ray = &ray, query.user = user;
   RTCOccludedArguments args;
   rtcInitOccludedArguments(&args);
   args.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
+  if (filter != nullptr)
+    args.filter = filter,
+    args.flags = static_cast<RTCRayQueryFlags>(args.flags | RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER);
   args.context = &query;
   rtcOccluded1(scene, &r, &args);
 }
 #else
 struct Query : RTCIntersectContext {
   const Ray* ray;
+  void* user;
 };
-Query queryOf(const Ray& ray) {
+Query queryOf(const Ray& ray, RTCFilterFunctionN filter, void* user) {
   Query query;
   rtcInitIntersectContext(&query);
   query.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-  query.ray = &ray;
+  query.filter = filter;
+  query.ray = &ray, query.user = user;
   return query;
 }
-void trace(RTCScene scene, RTCRayHit& rh, const Ray& ray) {
-  Query query = queryOf(ray);
+// filter: called for whatever is met, besides the geometries' own; user: for it.
+void trace(RTCScene scene, RTCRayHit& rh, const Ray& ray, RTCFilterFunctionN filter = nullptr, void* user = nullptr) {
+  Query query = queryOf(ray, filter, user);
   rtcIntersect1(scene, &query, &rh);
 }
-void shadow(RTCScene scene, RTCRay& r, const Ray& ray) {
-  Query query = queryOf(ray);
+void shadow(RTCScene scene, RTCRay& r, const Ray& ray, RTCFilterFunctionN filter = nullptr, void* user = nullptr) {
+  Query query = queryOf(ray, filter, user);
   rtcOccluded1(scene, &query, &r);
 }
 #endif
@@ -63,7 +81,9 @@ void shadow(RTCScene scene, RTCRay& r, const Ray& ray) {
 void setRay(RTCRay& out, const Ray& r) {
   out.org_x = r.origin.x, out.org_y = r.origin.y, out.org_z = r.origin.z;
   out.dir_x = r.direction.x, out.dir_y = r.direction.y, out.dir_z = r.direction.z;
-  out.tnear = r.tMin, out.tfar = r.tMax;
+  // what lies where a ray begins it meets if it leaves a triangle of several in one place
+  const bool fromThere = r.left.valid() && r.tMin < 1e-14f;
+  out.tnear = fromThere ? 0 : r.tMin, out.tfar = r.tMax;
   out.time = r.path.time, out.mask = ~0u, out.id = 0, out.flags = r.kind;
 }
 
@@ -89,6 +109,9 @@ void setTransform(RTCGeometry g, const Placement& placement) {
 }  // namespace
 
 struct Accel::Impl {
+  struct HashOfId {
+    size_t operator()(const PrimitiveId& id) const { return combine(combine(id.placement, id.shape), id.index); }
+  };
   // A geometry of the top level: a shape of a flat placement, or an instance of a shared mesh.
   struct Top {
     uint32_t placement, shape;
@@ -100,6 +123,7 @@ struct Accel::Impl {
   const Geometry* geometry = nullptr;
   // Placements that some kind of ray does not see; empty if all see all.
   std::vector<uint8_t> visibility;
+  std::unordered_set<PrimitiveId, HashOfId> doubled;  // triangles in whose place there are others
 
   ~Impl() {
     if (scene != nullptr) rtcReleaseScene(scene);
@@ -131,13 +155,102 @@ struct Accel::Impl {
       const Top& top = impl->tops[instanced ? instance : id];
       const uint32_t shape = top.shape + (instanced ? id : 0);
       const Strands& strands = *impl->geometry->shapes[shape].strands;
-      const StrandId met{top.placement, shape, strands.strandOf(RTCHitN_primID(args->hit, args->N, i))};
+      const PrimitiveId met{top.placement, shape, strands.strandOf(RTCHitN_primID(args->hit, args->N, i))};
       const float away = RTCHitN_Ng_x(args->hit, args->N, i) * RTCRayN_dir_x(args->ray, args->N, i) +
                          RTCHitN_Ng_y(args->hit, args->N, i) * RTCRayN_dir_y(args->ray, args->N, i) +
                          RTCHitN_Ng_z(args->hit, args->N, i) * RTCRayN_dir_z(args->ray, args->N, i);
       const bool seen = impl->visibility.empty() || (impl->visibility[top.placement] & ray.kind) != 0;
       if (!seen || met == ray.left || (strands.form != Form::kRibbons && away > 0)) args->valid[i] = 0;
     }
+  }
+
+  // Of a triangle that a filter is told of; of a strand, none.
+  PrimitiveId idOf(const RTCFilterFunctionNArguments* args, unsigned i) const {
+    const unsigned instance = RTCHitN_instID(args->hit, args->N, i, 0), id = RTCHitN_geomID(args->hit, args->N, i);
+    const bool instanced = instance != RTC_INVALID_GEOMETRY_ID;
+    const Top& top = tops[instanced ? instance : id];
+    const uint32_t shape = top.shape + (instanced ? id : 0);
+    if (geometry->shapes[shape].strands != nullptr) return {};
+    return {top.placement, shape, RTCHitN_primID(args->hit, args->N, i)};
+  }
+  // Rejects the triangle that the ray leaves and the one that it is aimed at.
+  static void filterOwn(const RTCFilterFunctionNArguments* args) {
+    const Query& query = *static_cast<const Query*>(args->context);
+    for (unsigned i = 0; i < args->N; ++i) {
+      if (args->valid[i] == 0) continue;
+      const PrimitiveId met = static_cast<const Impl*>(query.user)->idOf(args, i);
+      if (met.valid() && (met == query.ray->left || met == query.ray->aimed)) args->valid[i] = 0;
+    }
+  }
+  RTCFilterFunctionN filterFor(const Ray& ray) const {
+    return !doubled.empty() && (ray.left.valid() || ray.aimed.valid()) ? filterOwn : nullptr;
+  }
+
+  // What is found of triangles in the place of one.
+  struct Search {
+    const Impl& impl;
+    PrimitiveId own;
+    Vec3f normal;  // unit, world space
+    std::vector<PrimitiveId> found;
+  };
+  static void filterSearch(const RTCFilterFunctionNArguments* args) {
+    Search& search = *static_cast<Search*>(static_cast<const Query*>(args->context)->user);
+    for (unsigned i = 0; i < args->N; ++i) {
+      if (args->valid[i] == 0) continue;
+      args->valid[i] = 0;
+      const PrimitiveId met = search.impl.idOf(args, i);
+      if (!met.valid() || met == search.own) continue;
+      const Placement& p = search.impl.geometry->placements[met.placement];
+      Vec3f n{RTCHitN_Ng_x(args->hit, args->N, i), RTCHitN_Ng_y(args->hit, args->N, i),
+              RTCHitN_Ng_z(args->hit, args->N, i)};
+      if (!p.flat) n = p.at(kMiddle).toWorld.normal(n);
+      if (std::abs(dot(n, search.normal)) > 0.999f * length(n)) search.found.push_back(met);
+    }
+  }
+  // Looks from a few points of each triangle as far as rounding may take them. What lies in its place only between
+  // these points is not seen.
+  void findShared() {
+    constexpr uint64_t kMost = 1 << 22;  // triangles that are looked at, evenly
+    constexpr float kRoundings = 0x1p-21f;
+    constexpr float kPoints[][2] = {{1 / 3.f, 1 / 3.f}, {0.1f, 0.1f}, {0.8f, 0.1f}, {0.1f, 0.8f}};
+    const uint64_t step = 1 + geometry->triangles / kMost;
+    tbb::enumerable_thread_specific<std::vector<PrimitiveId>> all;
+    const auto look = [&](uint32_t placement, uint32_t shape, uint32_t triangle) {
+      const Corners c = Geometry::corners(geometry->placements[placement], geometry->shapes[shape], triangle);
+      const Vec3f ab = c[1] - c[0], ac = c[2] - c[0], normal = cross(ab, ac);
+      const float size = length(normal);
+      if (!(size > 0)) return;
+      const Vec3f n = normal / size;
+      const auto most = [](float x, float y, float z) { return std::max({std::abs(x), std::abs(y), std::abs(z)}); };
+      const float reach = std::abs(n.x) * most(c[0].x, c[1].x, c[2].x) + std::abs(n.y) * most(c[0].y, c[1].y, c[2].y) +
+                          std::abs(n.z) * most(c[0].z, c[1].z, c[2].z) + 0.5f * std::sqrt(size);
+      Search search{*this, {placement, shape, triangle}, n, {}};
+      for (const auto& q : kPoints) {
+        Ray ray;
+        ray.origin = c[0] + ab * q[0] + ac * q[1] - n * (kRoundings * reach);
+        ray.direction = n;
+        ray.tMin = 0, ray.tMax = 2 * kRoundings * reach;
+        ray.path.time = kMiddle;
+        RTCRayHit rh;
+        setRay(rh.ray, ray);
+        rh.hit.geomID = rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        trace(scene, rh, ray, filterSearch, &search);
+      }
+      if (search.found.empty()) return;
+      std::vector<PrimitiveId>& to = all.local();
+      to.push_back(search.own);
+      to.insert(to.end(), search.found.begin(), search.found.end());
+    };
+    for (uint32_t p = 0; p < geometry->placements.size(); ++p)
+      for (uint32_t k = 0; k < geometry->placements[p].shapes; ++k) {
+        const uint32_t s = geometry->placements[p].firstShape + k;
+        if (geometry->shapes[s].strands != nullptr) continue;
+        const uint64_t count = (geometry->shapes[s].triangles + step - 1) / step;
+        tbb::parallel_for(tbb::blocked_range<uint64_t>(0, count, 4096), [&](const tbb::blocked_range<uint64_t>& range) {
+          for (uint64_t i = range.begin(); i < range.end(); ++i) look(p, s, static_cast<uint32_t>(i * step));
+        });
+      }
+    for (const std::vector<PrimitiveId>& some : all) doubled.insert(some.begin(), some.end());
   }
 
   RTCGeometry surfaceOf(const Shape& s) { return s.strands != nullptr ? strands(*s.strands) : triangles(s); }
@@ -253,6 +366,7 @@ Accel::Accel(const Geometry& geometry, int threads) : impl_(std::make_unique<Imp
   }
   rtcCommitScene(a.scene);
   a.check("building the acceleration structure");
+  a.findShared();
 }
 
 Accel::~Accel() = default;
@@ -263,7 +377,7 @@ Hit Accel::intersect(const Ray& ray) const {
   setRay(rh.ray, ray);
   rh.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  trace(impl_->scene, rh, ray);
+  trace(impl_->scene, rh, ray, impl_->filterFor(ray), impl_.get());
   Hit h;
   if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID) return h;
   h.t = rh.ray.tfar;
@@ -277,15 +391,19 @@ Hit Accel::intersect(const Ray& ray) const {
     const Impl::Top top = impl_->tops[rh.hit.instID[0]];
     h.placement = top.placement, h.shape = top.shape + rh.hit.geomID;
   }
+  if (!impl_->doubled.empty()) [[unlikely]]
+    h.shared = shared({h.placement, h.shape, h.triangle});
   return h;
 }
 
 bool Accel::occluded(const Ray& ray) const {
   RTCRay r;
   setRay(r, ray);
-  shadow(impl_->scene, r, ray);
+  shadow(impl_->scene, r, ray, impl_->filterFor(ray), impl_.get());
   return r.tfar < 0;
 }
+
+bool Accel::shared(PrimitiveId triangle) const { return !impl_->doubled.empty() && impl_->doubled.contains(triangle); }
 
 const char* Accel::libraryVersion() { return "Embree " RTC_VERSION_STRING; }
 

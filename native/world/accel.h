@@ -17,7 +17,9 @@ struct Ray {
   float tMin = 1e-15f, tMax = 3.4e38f;
   Visibility kind = kSeenByCamera;
   PathState path;  // for programs
-  StrandId left;   // what it does not meet: the curve or the sphere that it leaves
+  // What it does not meet: the curve or the sphere that it leaves, or the triangle with others in its place, and such a
+  // one that it is aimed at.
+  PrimitiveId left, aimed;
 };
 
 struct Hit {
@@ -27,6 +29,8 @@ struct Hit {
   float u = 0, v = 0;
   Vec3f normal{0, 0, 0};  // geometric, not normalised; space of the shape (world if the placement is flat)
   uint32_t placement = ~0u, shape = ~0u, triangle = 0;  // or segment, or sphere
+
+  bool shared = false;  // another triangle lies in the same place
 
   bool valid() const { return placement != ~0u; }
 };
@@ -40,6 +44,10 @@ class Accel {
 
   Hit intersect(const Ray& ray) const;
   bool occluded(const Ray& ray) const;
+
+  // Whether another triangle lies in the place of this one, or of a part of it. Rays leave it from where it is, and do
+  // not meet it, but meet the other: as in Cycles, such a surface is in its own shadow.
+  bool shared(PrimitiveId triangle) const;
 
   static const char* libraryVersion();
 

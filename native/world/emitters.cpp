@@ -325,7 +325,7 @@ LightSample Emitters::sample(Vec3f from, ChoicePoint point, int bounces, float t
                               {c * t0.x + b.x * t1.x + b.y * t2uv.x, c * t0.y + b.x * t1.y + b.y * t2uv.y});
     }
     s.visibility = p.visibility;
-    s.mesh = true;
+    s.on = {e.placement, e.shape, e.triangle};
     return s;
   }
 

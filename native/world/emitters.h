@@ -22,7 +22,7 @@ struct LightSample {
       0;  // per solid angle, the choice of the emitter included; of a delta light: of the choice; 0: nothing arrives
   bool exclusive = false;  // no other technique meets this emitter: a delta light, or one without shadows
   bool shadow = true;      // occluders count
-  bool mesh = false;       // on a surface, which is not an occluder itself
+  PrimitiveId on;          // the triangle, which is not an occluder itself
   uint8_t visibility = kSeenByAll;
 };
 

@@ -36,10 +36,11 @@ struct Strands {
   void growBox(Vec3f& lower, Vec3f& upper) const;
 };
 
-// A curve or a sphere, for rays that leave it. Of no other: what a ray does not meet again.
-struct StrandId {
-  uint32_t placement = ~0u, shape = ~0u, strand = ~0u;
-  bool operator==(const StrandId&) const = default;
+// A curve, a sphere or a triangle, for rays that leave it or are aimed at it, and do not meet it.
+struct PrimitiveId {
+  uint32_t placement = ~0u, shape = ~0u, index = ~0u;
+  bool valid() const { return placement != ~0u; }
+  bool operator==(const PrimitiveId&) const = default;
 };
 
 // Where a ray met one. World space; unit vectors.

@@ -296,3 +296,29 @@ def flattened():
         child.rotation_euler, child.parent = (0.4, 0.5, 0.6), parent
     select(child)
     bpy.ops.object.mode_set(mode="EDIT")
+
+
+def square(of: Any, size: float, location: Any) -> Any:
+    made = mesh("Square", [(-size, -size, 0), (size, -size, 0), (size, size, 0), (-size, size, 0)], [(0, 1, 2, 3)], of)
+    made.location = location
+    return made
+
+
+@scene
+def twice_in_one_place():
+    """Rays leave a face without meeting it, and meet the other in its place: both are black."""
+    square(diffuse(), 3, (0, 0, 0.3))
+    square(diffuse(), 3, (0, 0, 0.3))
+    ball(location=(0, 0, 1.8), radius=0.6)
+    camera()
+    daylight()
+
+
+@scene
+def part_in_one_place():
+    """A picture that lies exactly on the floor."""
+    floor()
+    square(diffuse((0.8, 0.1, 0.1)), 1, (0, 0, 0))
+    ball(location=(0, 0, 1.5), radius=0.6)
+    camera()
+    daylight()
