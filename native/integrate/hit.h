@@ -395,10 +395,16 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
                          x.rayLength);
     ++counts.rays[t];
     Rgb seenThrough{1, 1, 1};
+    // What light samples aim at is hidden beyond what they pass: the image must not depend on how many there are.
+    const auto isHidden = [&](float pdf) {
+      if constexpr (kGeneral) return !sharp && pdf > 0 && world.isBeyond(ray);
+      return false;
+    };
     const uint32_t key = combine(combine(plan.pixelKey, dimension + static_cast<uint32_t>(t)),
                                  plan.index * uint32_t{kMaxSamplesPerHit} + static_cast<uint32_t>(k));
     const Hit hit = trace<N, K>(world, ray, key, seenThrough, [&](float tMax, bool escaped) {
       world.emitters.along(ray, tMax, escaped, static_cast<int>(plan.vertex), [&](const EmitterHit& e) {
+        if (isHidden(e.pdf)) return;
         p[kLight] = e.pdf;
         add(t, sharp, ahead, f, kGeneral ? e.radiance * seenThrough : e.radiance, p, e.visibility, set);
       });
@@ -410,8 +416,11 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       p[kLight] = world.emitters.trianglePdf(world.geometry.placements[hit.placement], hit, d, ray.path.time);
       Rgb radiance = interact<N, K>(world.scene, world.geometry, ray, hit).emission;
       if constexpr (kGeneral) radiance *= seenThrough;
-      add(t, sharp, ahead, f, radiance, p, world.geometry.placements[hit.placement].visibility, set);
+      if (!isHidden(p[kLight]))
+        add(t, sharp, ahead, f, radiance, p, world.geometry.placements[hit.placement].visibility, set);
     }
+    if constexpr (kGeneral)
+      if (world.isBeyond(ray)) continue;
     if constexpr (kPath) {
       p[kLight] = 0;  // no light sample covers what is reflected there
       const TechniqueMask used = techniques(t, sharp);

@@ -60,7 +60,7 @@ class LobeSurface {
   }
   // Shares the lobes out among the techniques, by their classes or in their order; those that are too many share one.
   void finish(const LobeNumbers& numbers) {
-    strength_.fill(0), delta_.fill(false), reflection_.fill(0);
+    strength_.fill(0), delta_.fill(false), reflection_.fill(0), transmission_.fill(0);
     strength_[kCosine] = luminance(diffuse_);
     std::array<float, kMostLobes> strength;
     size_t rough = 0, sharp = 0;
@@ -88,7 +88,9 @@ class LobeSurface {
       if (delta) delta_[slot] = true;
       slot_[i] = static_cast<uint8_t>(slot);
       strength_[slot] += strength[i];
-      reflection_[slot] |= isMatte(lobe_[i].kind) ? kSeenByDiffuse : kSeenByGlossy;
+      const bool matte = isMatte(lobe_[i].kind);
+      reflection_[slot] |= matte ? kSeenByDiffuse : kSeenByGlossy;
+      transmission_[slot] |= matte ? kSeenByTranslucence : kSeenByTransmission;
     }
     for (int i = 0; i < count_; ++i) share_[i] = strength_[slot_[i]] > 0 ? strength[i] / strength_[slot_[i]] : 1;
   }
@@ -100,7 +102,7 @@ class LobeSurface {
   }
   bool delta(size_t slot) const { return delta_[slot]; }
   // The kinds of ray, of Visibility, that a technique's lobes send to the viewer's side or to the other.
-  uint8_t rays(size_t slot, bool ahead) const { return ahead ? reflection_[slot] : uint8_t{kSeenByTransmission}; }
+  uint8_t rays(size_t slot, bool ahead) const { return ahead ? reflection_[slot] : transmission_[slot]; }
   // About the share of light from all around that it sends to the viewer.
   float strength(size_t slot) const { return strength_[slot]; }
   float strength() const { return std::accumulate(strength_.begin(), strength_.end(), 0.0f); }  // of all
@@ -249,7 +251,7 @@ class LobeSurface {
   std::array<float, kMostFrames> ownCosine_;  // of the frame's normal and the surface's own
   std::array<float, K - 1> strength_;
   std::array<bool, K - 1> delta_;
-  std::array<uint8_t, K - 1> reflection_;
+  std::array<uint8_t, K - 1> reflection_, transmission_;
 };
 
 }  // namespace wardmis

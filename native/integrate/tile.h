@@ -77,6 +77,8 @@ Rgb cameraSample(const KernelInput<K>& in, const Ray& camera, uint32_t pixelKey,
   if (pilot != nullptr && pilot->surface.material < 0) pilot->surface = surface, pilot->techniques = mask;
 
   if (mask == 0 || !s.reflects()) return sum;
+  if constexpr ((N & kNeedsLobes) != 0)
+    if (world.isBeyond(ray)) return sum;
   HitPlan<K> plan;
   const PixelSurface* const own = pilot != nullptr       ? &pilot->surface
                                   : allocated != nullptr ? &allocated->surface

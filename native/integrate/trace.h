@@ -15,9 +15,12 @@ struct RenderScene {
   const Geometry& geometry;
   const Accel& accel;
   const Emitters& emitters;
-  // Surfaces that a path passes straight, all its rays together, and a shadow ray from there; the next one lets nothing
-  // through. 0 also where no surface does.
+  // Surfaces that a path passes straight, all its rays together, and a shadow ray from there, to which the next one is
+  // opaque. Other rays pass that one, too, but what they meet then shows them its emission alone. 0 also where no
+  // surface lets light through.
   int mostTransparent = 0;
+  // Whether a ray has passed that one more.
+  bool isBeyond(const Ray& ray) const { return ray.path.transparent > mostTransparent; }
 };
 
 namespace detail {
@@ -39,8 +42,8 @@ float behind(const X& x, Vec3f direction, float t) {
   constexpr float kGrazing = 1e-3f;
   return t + std::max(2 * x.clearance / std::max(std::abs(dot(x.geometric, direction)), kGrazing), t * 1e-6f);
 }
-inline bool mayPass(const RenderScene& world, const Ray& ray, const Hit& hit) {
-  return ray.path.transparent < world.mostTransparent &&
+inline bool mayPass(const RenderScene& world, const Ray& ray, const Hit& hit, int most) {
+  return ray.path.transparent < most &&
          world.scene.materials[static_cast<size_t>(world.geometry.shapes[hit.shape].material)].transparent;
 }
 
@@ -57,7 +60,7 @@ Hit trace(const RenderScene& world, Ray& ray, uint32_t key, Rgb& weight, Along&&
     if constexpr ((N & kNeedsLobes) == 0) {
       return hit;
     } else {
-      if (!hit.valid() || !detail::mayPass(world, ray, hit)) return hit;
+      if (!hit.valid() || !detail::mayPass(world, ray, hit, world.mostTransparent + 1)) return hit;
       const auto x = interact<N, K>(world.scene, world.geometry, ray, hit);
       const float q = detail::passing(x);
       if (!(q > 0)) return hit;
@@ -83,7 +86,7 @@ Rgb transmittance(const RenderScene& world, Ray ray) {
   for (;;) {
     const Hit hit = world.accel.intersect(ray);
     if (!hit.valid()) return left;
-    if (!detail::mayPass(world, ray, hit)) return kNone;
+    if (!detail::mayPass(world, ray, hit, world.mostTransparent)) return kNone;
     const auto x = interact<N, K>(world.scene, world.geometry, ray, hit);
     left *= x.surface.transparent;
     if (!(maxComponent(left) > 0)) return kNone;

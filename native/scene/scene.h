@@ -111,9 +111,16 @@ enum Visibility : uint8_t {
   kSeenByGlossy = 4,
   kCastsShadow = 8,
   kSeenByTransmission = 16,  // whatever transmits: diffuse and glossy are reflections
+  kSeenByTranslucence = 32,  // what matte surfaces transmit: as translucence() has it
   kSeenBySurfaces = kSeenByDiffuse | kSeenByGlossy | kSeenByTransmission,
-  kSeenByAll = 31
+  kSeenByAll = 63
 };
+// Cycles counts matte transmission as transmission where objects are concerned, and as diffuse where lamps and skies
+// are.
+constexpr uint8_t translucence(uint8_t visibility, Visibility counted) {
+  return static_cast<uint8_t>((visibility & counted) != 0 ? visibility | kSeenByTranslucence
+                                                          : visibility & ~kSeenByTranslucence);
+}
 
 // What programs read of an object.
 struct ObjectData {

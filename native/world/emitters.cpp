@@ -114,7 +114,7 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Env
     if (isBlack(light.emitted)) continue;
     Lamp l{};
     l.emitted = light.emitted;
-    l.visibility = light.visibility;
+    l.visibility = translucence(light.visibility, kSeenByDiffuse);
     l.shadow = light.shadow;
     l.maxBounces = light.maxBounces;
     l.center = light.toWorld.t;
@@ -185,7 +185,7 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Env
     Lamp l{};
     l.kind = Kind::kEnvironment;
     l.environment = i;
-    l.visibility = environment.world().visibility;
+    l.visibility = translucence(environment.world().visibility, kSeenByDiffuse);
     l.maxBounces = environment.world().maxBounces;
     lamps_.push_back(l);
     sky_ |= (l.visibility & kSeenBySurfaces) != 0;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How often light may go through surfaces."""
+"""What goes through surfaces: how often it may, and what it sees."""
 
 import math
 from collections.abc import Callable
@@ -8,7 +8,12 @@ from typing import Any
 import bpy
 from stage import add, ball, camera, diffuse, floor, lamp, material, mesh, scene, sky, square
 
-KINDS: dict[str, dict[str, Any]] = {"Refraction": {"IOR": 1.2, "Roughness": 0.0}}
+KINDS: dict[str, dict[str, Any]] = {
+    "Refraction": {"IOR": 1.2, "Roughness": 0.0},
+    "Glass": {"IOR": 1.3, "Roughness": 0.3},
+    "Translucent": {},
+    "Transparent": {"Color": (0.8, 0.7, 0.6, 1)},
+}
 
 
 def shader(kind: str) -> Any:
@@ -24,8 +29,8 @@ def panes(kind: str, count: int = 4) -> None:
     ball(diffuse((0.1, 0.4, 0.8)), location=(1.1, 0.8, 0.8), radius=0.8)
     made = shader(kind)
     for i in range(count):
-        pane = mesh("Pane", *square(2.4), made)
-        pane.location, pane.rotation_euler = (-1.6 + 0.7 * i, -1 - 0.3 * i, 1.2), (math.pi / 2, 0, 0.1)
+        pane = mesh("Pane", *square(0.9), made)
+        pane.location, pane.rotation_euler = (-0.8 + 0.5 * i, -1 - 0.3 * i, 1.2), (math.pi / 2, 0, 0.1)
     lamp("AREA", (1, -1, 5), 200, target=(0, 0, 0), shape="RECTANGLE", size=2, size_y=1)
     sky((0.3, 0.4, 0.5))
     camera()
@@ -44,3 +49,43 @@ def enter(name: str, build: Callable[[], None]) -> None:
 
 for bounces in (0, 1):
     enter(f"refraction_{bounces}", lambda bounces=bounces: (panes("Refraction"), limited(bounces, 8)))
+enter("translucent_1", lambda: (panes("Translucent"), limited(1, 8)))
+enter("glass_1", lambda: (panes("Glass"), limited(1, 8)))
+enter("transparent_1", lambda: (panes("Transparent"), limited(8, 1)))
+
+
+@scene(bounces=8, within=0.02, why="rays that meet the lamp by chance pass one surface more in Cycles")
+def transparent_0():
+    panes("Transparent")
+    limited(8, 0)
+
+
+@scene(bounces=8)
+def ball_not_by_what_is_refracted():
+    panes("Refraction", 2)
+    bpy.data.objects["Ball"].visible_transmission = False
+
+
+@scene(bounces=8)
+def lamp_not_by_what_is_transmitted():
+    """But Cycles counts what is translucent as diffuse, where lamps are concerned."""
+    panes("Translucent", 2)
+    lamp("POINT", (-0.3, 1.2, 2.6), 200, (1, 0.2, 0.2)).visible_transmission = False
+
+
+@scene(bounces=8)
+def lamp_not_by_what_is_diffuse():
+    panes("Translucent", 2)
+    lamp("POINT", (-0.3, 1.2, 2.6), 200, (1, 0.2, 0.2)).visible_diffuse = False
+
+
+@scene(bounces=8)
+def sky_not_by_what_is_diffuse():
+    panes("Translucent", 2)
+    bpy.context.scene.world.cycles_visibility.diffuse = False
+
+
+@scene(bounces=8)
+def sky_not_by_what_is_refracted():
+    panes("Refraction", 2)
+    bpy.context.scene.world.cycles_visibility.transmission = False

@@ -163,6 +163,46 @@ TEST(Closures, SheetsLetLightThrough) {
   }
 }
 
+// A ray that is no shadow ray passes one sheet more, behind which it sees the sky and what emits, and no surface.
+TEST(Closures, BehindOneSheetMoreThereIsTheSky) {
+  const auto sheets = [](Scene& scene, int count) {
+    scene.materials.push_back(material({closure(ClosureType::kTransparent, {0.5f, 0.5f, 0.5f})}));
+    const int sheet = static_cast<int>(scene.materials.size()) - 1;
+    for (int i = 1; i <= count; ++i) addPlane(scene, 1000, sheet, 0.5f * static_cast<float>(i));
+  };
+  for (int count : {1, 2, 3})
+    for (int most : {0, 1, 2}) {
+      RenderSettings s = settings();
+      s.spp = 64, s.maxTransparent = most;
+      const double passed = count <= most + 1 ? std::pow(0.5, count) : 0;
+      Scene seen = diffusePlane(4);
+      seen.materials[0] = material({closure(ClosureType::kTransparent, kWhite)});
+      seen.instances.clear();
+      sheets(seen, count);
+      seen.worlds = {World{}};
+      worldOf(seen).radiance = kWhite;
+      EXPECT_NEAR(meanOf(seen, s), passed, 1e-5) << count << ' ' << most;
+      // the sheets hidden from the camera, before which a white plane reflects what comes through them
+      Scene lit = diffusePlane(4);
+      lit.materials[0] = material({closure(ClosureType::kDiffuse, kWhite)});
+      sheets(lit, count);
+      for (size_t i = 1; i < lit.instances.size(); ++i)
+        lit.instances[i].visibility &= static_cast<uint8_t>(~kSeenByCamera);
+      lit.worlds = {World{}};
+      worldOf(lit).radiance = kWhite;
+      for (auto integrator : {Integrator::kDirect, Integrator::kPath}) {
+        s.integrator = integrator;
+        EXPECT_NEAR(meanOf(lit, s), passed, 0.02 * passed) << count << ' ' << most;
+      }
+      // behind them a surface
+      addPlane(seen, 1000, 0, 0);
+      seen.materials[0] = material({closure(ClosureType::kDiffuse, kWhite)});
+      if (count == most + 1) EXPECT_EQ(meanOf(seen, s), 0) << count;
+      seen.materials[0].emission.value = {3, 3, 3};
+      if (count == most + 1) EXPECT_NEAR(meanOf(seen, s), 3 * passed, 1e-4) << count;
+    }
+}
+
 // A sheet that lets all light through and sends some of its own besides, under a white sky: 1 + a + e, the same with
 // few paths as with many.
 TEST(Closures, WhatIsAddedToATransparentSurfaceIsSeen) {
@@ -195,8 +235,8 @@ TEST(Closures, TransmissionHasALimitOfItsOwn) {
       }
 }
 
-// A plane that scatters light to below, seen from there, under what some rays do not see: translucent light and what
-// glass lets pass are for rays of transmission alone.
+// A plane that scatters light to below, seen from there, under what some rays do not see: what glass lets pass is for
+// rays of transmission alone; translucent light counts as diffuse where lamps and skies are seen, as in Cycles.
 TEST(Closures, WhatTransmissionSeesIsItsOwn) {
   const auto through = [](const Closure& c, int kind, int hidden) {
     Scene scene;
@@ -223,8 +263,11 @@ TEST(Closures, WhatTransmissionSeesIsItsOwn) {
     for (int kind : {0, 1, 2}) {
       const double all = through(c, kind, 0);
       EXPECT_GT(all, 0.1) << kind;
-      EXPECT_NEAR(through(c, kind, kSeenByDiffuse | kSeenByGlossy) / all, 1, 0.02) << kind;
-      EXPECT_EQ(through(c, kind, kSeenByTransmission), 0) << kind;
+      const bool diffuse = c.type == ClosureType::kTranslucent && kind < 2;
+      const int own = diffuse ? kSeenByDiffuse : kSeenByTransmission;
+      const int others = kSeenByGlossy | (diffuse ? kSeenByTransmission : kSeenByDiffuse);
+      EXPECT_NEAR(through(c, kind, others) / all, 1, 0.02) << kind;
+      EXPECT_EQ(through(c, kind, own), 0) << kind;
     }
   // what reflects sees the same by its own rays
   Scene scene = ball({rough(closure(ClosureType::kGlossy), 0.3f)});
