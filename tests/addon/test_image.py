@@ -8,8 +8,10 @@ from types import SimpleNamespace
 
 import bpy
 import numpy as np
-from wardmis.export.context import ExportContext
-from wardmis.export.image import Picture, export_image, frame_of, path_of_frame, picture_of
+from wardmis.export.context import ExportContext, ExportError
+from wardmis.export.glb import write_glb
+from wardmis.export.image import Picture, WithinMemory, export_image, frame_of, path_of_frame, picture_of
+from wardmis.export.model import CameraData, FileOnDisk, FilmData, SceneData
 from wardmis.export.world import export_worlds
 
 LINEAR = "Linear" if bpy.app.version < (4, 0, 0) else "Linear Rec.709"
@@ -19,6 +21,7 @@ class Images(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
+        self.path = os.path.join(self.folder.name, "image")
 
     def generated(self, is_float, color_space="sRGB"):
         """2 x 1 texels."""
@@ -31,7 +34,7 @@ class Images(unittest.TestCase):
     def file(self, file_format, is_float=False):
         """An image read from a file of this format, and the file's bytes."""
         image = self.generated(is_float, LINEAR if is_float else "sRGB")
-        path = os.path.join(self.folder.name, "image")
+        path = self.path
         image.filepath_raw, image.file_format = path, file_format
         image.save()
         loaded = bpy.data.images.load(path)
@@ -50,7 +53,7 @@ class Images(unittest.TestCase):
             with self.subTest(file_format):
                 image, content = self.file(file_format, is_float)
                 data = export_image(Picture(image))
-                self.assertEqual((data.mime_type, data.encoded == content), (mime_type, True))
+                self.assertEqual((data.mime_type, data.encoded), (mime_type, FileOnDisk(self.path, len(content))))
                 self.assertIsNone(data.pixels)
                 self.assertEqual(data.color_space, "linear" if is_float else "sRGB")
                 self.assertIsNone(Picture(image).missing())
@@ -175,8 +178,45 @@ class Images(unittest.TestCase):
         os.rename(os.path.join(self.folder.name, "image"), path)
         image.filepath = path.replace("frame_03", "frame_01")
         image.source = "SEQUENCE"
-        self.assertEqual(export_image(Picture(image, frame=3)).encoded, content)
+        self.assertEqual(export_image(Picture(image, frame=3)).encoded, FileOnDisk(path, len(content)))
         self.assertIn("frame_04.png' is missing", Picture(image, frame=4).missing())
+
+    def test_files_are_written_as_they_are_then(self):
+        image, content = self.file("PNG")
+        film = FilmData((1, 1), (0, 0, 1, 1))
+        camera = CameraData("C", np.eye(4), "perspective", (-1, 1, -1, 1), (0.1, 100))
+        scene = SceneData("test", film, camera, images=[export_image(Picture(image))])
+        path = os.path.join(self.folder.name, "scene.glb")
+        write_glb(scene, path)
+        with open(path, "rb") as file:
+            self.assertIn(content, file.read())
+        with open(self.path, "ab") as file:
+            file.write(b"more")
+        with self.assertRaisesRegex(ExportError, "image' has changed"):
+            write_glb(scene, path)
+        os.remove(self.path)
+        with self.assertRaisesRegex(ExportError, "image' cannot be read any more"):
+            write_glb(scene, path)
+
+    def test_what_blender_has_read_for_the_export_is_given_back(self):
+        _, content = self.file("PNG")
+        images = []
+        for k in range(4):
+            path = os.path.join(self.folder.name, f"image{k}")
+            with open(path, "wb") as file:
+                file.write(content)
+            images.append(bpy.data.images.load(path))
+            self.addCleanup(bpy.data.images.remove, images[-1])
+        images[0].pixels[0]  # it is read before the export
+        self.assertEqual([image.has_data for image in images], [True, False, False, False])
+        export = WithinMemory(limit=16)  # two images of two texels
+        for image in images:
+            self.assertEqual(export(Picture(image)).mime_type, "image/png")
+        self.assertEqual([image.has_data for image in images], [True, False, True, True])
+        images[2].pixels[0] = 0.5  # what is painted must stay
+        export(Picture(images[1]))
+        self.assertEqual([image.has_data for image in images], [True, True, True, True])
+        self.assertAlmostEqual(images[2].pixels[0], 0.5, places=2)
 
     def test_alpha_as_cycles_takes_it(self):
         image, _ = self.file("PNG")

@@ -19,6 +19,7 @@ from .model import (
     CameraData,
     ClosureData,
     ColorInput,
+    FileOnDisk,
     ImageData,
     InstanceData,
     LightData,
@@ -67,10 +68,23 @@ def write_glb(
     header += struct.pack("<I4s", encoder.length, b"BIN\0")
     with writing(path) as file:
         for chunk in (header, *encoder.chunks):
-            view = memoryview(chunk).cast("B")
+            view = memoryview(_content(chunk)).cast("B")
             for start in range(0, len(view), WRITE_STEP):
                 _write_all(file, view[start : start + WRITE_STEP])
                 check_cancelled()
+
+
+def _content(chunk: Any) -> Any:
+    if not isinstance(chunk, FileOnDisk):
+        return chunk
+    try:
+        with open(chunk.path, "rb") as file:
+            content = file.read()
+    except OSError as error:
+        raise ExportError(f"image file '{chunk.path}' cannot be read any more: {error.strerror}") from error
+    if len(content) != chunk.size:
+        raise ExportError(f"image file '{chunk.path}' has changed while the scene was exported; export it again")
+    return content
 
 
 def _write_all(file: Any, view: memoryview) -> None:
@@ -79,7 +93,7 @@ def _write_all(file: Any, view: memoryview) -> None:
 
 
 class _Encoder:
-    """Collects the JSON and, in `chunks`, what follows it in the binary part: views of the scene's own arrays."""
+    """Collects the JSON and, in `chunks`, what follows it in the binary part: views of the scene's own arrays, and files."""
 
     def __init__(self) -> None:
         self.chunks: list[Any] = []
@@ -120,7 +134,7 @@ class _Encoder:
     # --- binary -----------------------------------------------------------------------------------------------------
 
     def _view(self, data: Any, target: int | None = None) -> int:
-        size = memoryview(data).nbytes
+        size = data.size if isinstance(data, FileOnDisk) else memoryview(data).nbytes
         view = {"buffer": 0, "byteOffset": self.length, "byteLength": size}
         if target is not None:
             view["target"] = target

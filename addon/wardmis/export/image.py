@@ -12,7 +12,7 @@ import bpy
 import numpy as np
 
 from .. import compat
-from .model import ImageData, Rgb
+from .model import FileOnDisk, ImageData, Rgb
 
 # what stands in for an image that cannot be shown: never black, easy to see, and Blender's own sign for it
 MISSING: Rgb = (1.0, 0.0, 1.0)
@@ -127,7 +127,7 @@ class Picture:
             return ImageData(
                 self.name,
                 self._space,
-                encoded=self._file(),
+                encoded=self._complete_file(),
                 mime_type=mime_type,
                 filter_encoded=self.is_encoded,
                 alpha={"multiplied": "multiplies", "ignored": "ignored"}.get(self.alpha, "kept"),
@@ -193,6 +193,11 @@ class Picture:
         except OSError:
             return b""
 
+    def _complete_file(self) -> bytes | FileOnDisk:
+        if self.image.packed_files:
+            return self._file()
+        return FileOnDisk(self.path, os.path.getsize(self.path))
+
     @property
     def _is_multiplied_on_loading(self) -> bool:
         """Whether Blender holds the colours of a float image multiplied by alpha, which its file does not."""
@@ -210,7 +215,8 @@ class Picture:
         image.pixels.foreach_get(pixels)
         pixels = pixels.reshape(height, width, image.channels)
         if not image.is_float:
-            pixels = np.rint(pixels * 255.0).astype(np.uint8)
+            np.multiply(pixels, np.float32(255), out=pixels)
+            pixels = np.rint(pixels, out=pixels).astype(np.uint8)
         elif image.channels == 4 and self._is_multiplied_on_loading:
             pixels = np.concatenate([_over_alpha(pixels), pixels[..., 3:]], axis=-1)
         if image.is_float and self.is_encoded:
@@ -275,6 +281,33 @@ def path_of_tile(path: str, first: int, number: int) -> str:
 
 def export_image(image: Picture | Pixels) -> ImageData:
     return image.export()
+
+
+class WithinMemory:
+    """export_image() for a whole scene. Asking Blender about an image makes it read all pixels, which it keeps: beyond `limit` bytes
+    those of files that it had not read before are given back, the oldest first."""
+
+    def __init__(self, limit: int = 1_000_000_000) -> None:
+        self._limit = limit
+        self._read_before = {image.name_full for image in bpy.data.images if image.has_data}
+        self._read: dict[str, tuple[Any, int]] = {}
+
+    def __call__(self, image: Picture | Pixels) -> ImageData:
+        data = export_image(image)
+        if isinstance(image, Picture):
+            self._bound(image.image)
+        return data
+
+    def _bound(self, image: Any) -> None:
+        if image.name_full in self._read_before or image.source not in {"FILE", "TILED"} or not image.has_data:
+            return
+        width, height = image.size
+        self._read.pop(image.name_full, None)
+        self._read[image.name_full] = image, width * height * (16 if image.is_float else 4)
+        while sum(size for _, size in self._read.values()) > self._limit:
+            oldest, _ = self._read.pop(next(iter(self._read)))
+            if not oldest.is_dirty:
+                oldest.buffers_free()
 
 
 def encode_srgb(v: np.ndarray) -> np.ndarray:

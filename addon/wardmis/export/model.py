@@ -33,13 +33,21 @@ def not_finite(data: Any) -> str | None:
     return None
 
 
+@dataclass(frozen=True)
+class FileOnDisk:
+    """The bytes of a file, read when they are written: not all images' are in memory at once."""
+
+    path: str
+    size: int
+
+
 @dataclass
 class ImageData:
     """An image: either a complete file (`encoded`) or raw `pixels`, exactly one of the two."""
 
     name: str
     color_space: str = "sRGB"  # how to decode: "sRGB" or "linear"
-    encoded: bytes | None = None  # the bytes of a file of type `mime_type`
+    encoded: bytes | FileOnDisk | None = None  # the bytes of a file of type `mime_type`
     mime_type: str = ""  # image/png, image/jpeg, image/x-exr
     pixels: np.ndarray | None = None  # (height, width, channels 1..4), uint8 or float32, rows from the bottom
     filter_encoded: bool = False  # sRGB values are filtered as they are, and decoded after that

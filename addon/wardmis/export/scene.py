@@ -15,7 +15,7 @@ from .attribute import OF_OBJECT, object_attributes
 from .camera import export_camera, export_film
 from .context import ExportContext, ExportError, Tell
 from .hashing import random_of
-from .image import export_image
+from .image import WithinMemory
 from .light import export_light
 from .material import export_material
 from .mesh import Geometry, Wanted, assemble, gather_geometry, transformed, wanted_of
@@ -84,7 +84,7 @@ def _gather(
     camera = camera or scene.camera
     film = export_film(scene)
     film.keep_uvs = depsgraph.view_layer.use_pass_uv
-    context = ExportContext(export_image, cancelled, frame, tell)
+    context = ExportContext(WithinMemory(), cancelled, frame, tell)
     motion = None
     if opening is not None and set_frame is not None:
         motion = Motion(opening, set_frame, depsgraph.scene, context)
