@@ -3,6 +3,7 @@
 
 import math
 
+import bpy
 from stage import (
     BLUE,
     GREEN,
@@ -14,6 +15,8 @@ from stage import (
     collection,
     emitter,
     floor,
+    gradient,
+    image,
     instance,
     lamp,
     mesh,
@@ -235,6 +238,78 @@ def pattern_on_an_area():
     facing = add(tree, "LayerWeight", Blend=0.3)
     tree.links.new(facing.outputs["Facing"], tree.nodes["Emission"].inputs["Strength"])
     lamp("POINT", (0.5, 1, 3), 300, BLUE)
+
+
+def parts(output):
+    """Lamps whose strength is x + 2 y of an output."""
+
+    def make(kind, position, power, color, **more):
+        made = lamp(kind, position, power, color, turned=0.7, **more)
+        tree = tree_of(made)
+        source = add(tree, output[0]).outputs[output[1]]
+        split = add(tree, "SeparateXYZ", Vector=source)
+        both = add(tree, "Math", {"operation": "MULTIPLY_ADD"})
+        tree.links.new(split.outputs["Y"], both.inputs[0])
+        both.inputs[1].default_value = 2.0
+        tree.links.new(split.outputs["X"], both.inputs[2])
+        tree.links.new(both.outputs[0], tree.nodes["Emission"].inputs["Strength"])
+
+    return make
+
+
+UVS, PARAMETRIC = ("TexCoord", "UV"), ("NewGeometry", "Parametric")
+
+
+def on_areas(output):
+    things()
+    make = parts(output)
+    make("AREA", (-2, -2, 3), 100, RED, size=2)
+    make("AREA", (2, -3, 3), 100, GREEN, size=1, size_y=2, shape="RECTANGLE", scale=(1.5, 0.8, 1))
+    make("AREA", (1, 1.5, 3), 100, BLUE, size=1.5, shape="DISK")
+
+
+def on_others(output):
+    things()
+    make = parts(output)
+    make("POINT", (-2, -2, 4), 200, RED, shadow_soft_size=0.3)
+    make("SPOT", (2, -3, 3), 300, GREEN, spot_size=1.5, spot_blend=0.2)
+    if bpy.app.version >= (4, 0):  # random numbers before
+        make("SUN", (1, 2, 4), 2, BLUE, angle=0.3)
+
+
+@scene
+def uvs_of_areas():
+    """0 before 4.0."""
+    on_areas(UVS)
+
+
+@scene
+def parametric_of_areas():
+    on_areas(PARAMETRIC)
+
+
+@scene
+def uvs_of_others():
+    on_others(UVS)
+
+
+@scene
+def parametric_of_others():
+    on_others(PARAMETRIC)
+
+
+@scene
+def images_on_lamps():
+    """As a soft box and a slide projector, without coordinates."""
+    things()
+    picture = image("Slide", gradient(4, 4))
+    for kind, position, power, settings in (
+        ("AREA", (-2, -2, 3), 100, {"size": 1.5}),
+        ("SPOT", (2, -3, 3), 300, {"spot_size": 1.2, "spot_blend": 0.1}),
+    ):
+        tree = tree_of(lamp(kind, position, power, **settings))
+        texture = add(tree, "TexImage", {"image": picture})
+        tree.links.new(texture.outputs["Color"], tree.nodes["Emission"].inputs["Color"])
 
 
 @scene

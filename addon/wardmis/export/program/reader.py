@@ -54,6 +54,7 @@ class Reader(Builder):
         super().__init__()
         self.kind = kind
         self.is_light = kind != "material"  # what is read colours light: a lost image is grey then, not magenta
+        self.on_lamp: Callable[[Reader], Value] | None = None  # of a lamp: lamp.py's
         self.discs = True  # whether skies show the discs of their suns
         # of the suns shown: direction in the world, None if that is not fixed, and angle
         self.suns: list[tuple[Any, float]] = []
@@ -62,6 +63,11 @@ class Reader(Builder):
 
     def place(self, name: str, /, **parameters: Any) -> Value:
         """An operation that tells where the program runs; what is elsewhere than on a surface, as Cycles has it there."""
+        # of all sets of UVs a lamp has the one without a name
+        if self.on_lamp is not None and (
+            name == "parametric" or (name == "uv" and compat.CYCLES >= 4 and not parameters)
+        ):
+            return self.on_lamp(self)
         elsewhere = ELSEWHERE.get(self.kind, {}).get(name, name)
         if not isinstance(elsewhere, str):
             return elsewhere
