@@ -270,24 +270,30 @@ class Study {
     seedsWereCut_ = true;
   }
 
-  // Mean over the configurations.
+  // Mean over the configurations; where a budget is used up before all are measured, over those that are: it is too
+  // small.
   double secondsPerSample() const {
     double sum = 0;
+    size_t measured = 0;
+    const auto usedUp = [&] { return plan_.budgetSeconds > 0 && wallSeconds() - start_ > plan_.budgetSeconds; };
     for (const Configuration& c : experiment_.configurations) {
       RenderSettings s = c.settings;
       s.spp = 8, s.seed = kReferenceSeed - 2, s.threads = plan_.threads;
       RenderObserver watch;
       watch.stop = observer_.stop;
       double seconds = 0;
-      for (int round = 0; round < (sum > 0 ? 1 : 2); ++round) {  // the first of all warms the caches
+      for (int round = 0; round < (sum > 0 ? 1 : 2) && (round == 0 || !usedUp());
+           ++round) {  // the first warms the caches
         Statistics st;
         const FilmBuffer film = render(built_, s, st, watch);
         seconds = (st.pilotSeconds + st.renderSeconds) / std::max(1u, film.samples);
       }
       // whose runs render each checkpoint anew: 1 + 2 + ... + n samples
       sum += c.settings.sampler == SamplerType::kStratified ? 2 * seconds : seconds;
+      ++measured;
+      if (usedUp()) break;
     }
-    return std::max(sum / double(experiment_.configurations.size()), 1e-9);
+    return std::max(sum / double(measured), 1e-9);
   }
 
   // The settings of one configuration for each kind of light that is estimated.

@@ -418,6 +418,15 @@ class Film(SceneTest):
         self.assertEqual((film.resolution, film.border), ((166, 50), (0, 0, 166, 50)))
         self.assertEqual((film.filter_type, film.exposure, film.transparent), ("box", 2, True))
 
+    def test_transparent_glass_is_named(self):
+        cycles = self.scene.cycles
+        self.addCleanup(setattr, cycles, "film_transparent_glass", cycles.film_transparent_glass)
+        cycles.film_transparent_glass = True
+        self.assertEqual(self.gather().notes, [])
+        self.scene.render.film_transparent = True
+        self.addCleanup(setattr, self.scene.render, "film_transparent", False)
+        self.assertIn("Transparent Glass is not supported", "\n".join(self.gather().notes))
+
     def test_border_without_pixels(self):
         render = self.scene.render
         render.use_border, render.border_min_x, render.border_max_x = True, 0.5, 0.5001

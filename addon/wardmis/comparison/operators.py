@@ -203,7 +203,10 @@ class _Asked:
             _refusals[self.but_for_time] = enough
         whose = "WardMIS' half of the time" if self.settings.use_cycles else "the time"
         message = re.sub(r"--budget-seconds ([\d.e+]+):", rf"{whose}, \1 s, is too little:", message)
-        return message.replace("--seeds", "seeds").replace("--resolution", "resolution")
+        message = re.sub(r"^.* failed \(exit code 2\): ", "", message)
+        for ours, panels in (("--seeds", "seeds"), ("--resolution", "resolution"), ("configurations", "allocations")):
+            message = message.replace(ours, panels)
+        return message
 
 
 def _as_it_is(group: Any) -> Any:

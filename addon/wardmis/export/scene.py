@@ -85,6 +85,8 @@ def _gather(
     film = export_film(scene)
     film.keep_uvs = depsgraph.view_layer.use_pass_uv
     context = ExportContext(WithinMemory(), cancelled, frame, tell)
+    if film.transparent and getattr(getattr(scene, "cycles", None), "film_transparent_glass", False):
+        context.note("the film's Transparent Glass is not supported: what is seen through glass stays opaque")
     motion = None
     if opening is not None and set_frame is not None:
         motion = Motion(opening, set_frame, depsgraph.scene, context)
