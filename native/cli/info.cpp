@@ -8,6 +8,7 @@
 
 #include "cli/verbs.h"
 #include "gltf/reader.h"
+#include "image/texel_memory.h"
 #include "scene/defaults.h"
 #include "world/needs.h"
 
@@ -58,6 +59,7 @@ Verb addInfo(CLI::App& app) {
     const std::vector<std::string> left = leftOut(scene, n, emitters);
     const Film& film = scene.film;
     const std::vector<std::pair<std::string, std::map<std::string, int>>> programs = programsOf(scene);
+    const TexelUse texels = texelUse();
     if (o->json) {
       const nlohmann::json j{{"version", WARDMIS_VERSION},
                              {"scene", o->scene},
@@ -74,6 +76,8 @@ Verb addInfo(CLI::App& app) {
                                {"lights", scene.lights.size()},
                                {"emissive_triangles", emitters.emissiveTriangles()},
                                {"images", scene.images.size()},
+                               {"image_bytes_in_memory", texels.memory},
+                               {"image_bytes_in_files", texels.files},
                                {"degenerate_triangles", scene.degenerateTriangles}}},
                              {"needs", describe(n)},
                              {"programs", programs},
@@ -93,7 +97,9 @@ Verb addInfo(CLI::App& app) {
     if (geometry.spheres > 0) fmt::print("              {} spheres\n", geometry.spheres);
     if (scene.degenerateTriangles > 0)
       fmt::print("              {} triangles without area were dropped\n", scene.degenerateTriangles);
-    fmt::print("  materials   {}, textures {}\n", scene.materials.size(), scene.images.size());
+    const std::string taken = describe(texels);
+    fmt::print("  materials   {}, textures {}{}\n", scene.materials.size(), scene.images.size(),
+               taken.empty() ? "" : ": " + taken);
     std::string skies;
     for (const Environment& e : environments)
       if (e.exists())

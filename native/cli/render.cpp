@@ -17,6 +17,7 @@
 #include "cli/verbs.h"
 #include "film/write_file.h"
 #include "gltf/reader.h"
+#include "image/texel_memory.h"
 #include "integrate/passes.h"
 #include "math/clones.h"
 #include "math/error.h"
@@ -197,6 +198,7 @@ int run(Options& o) {
                     {"left_out", st.leftOut},
                     {"notes", scene.notes}});
     reporter.info(fmt::format("{}: {} triangles, kernel: {}", o.scene, st.triangles, describe(st.kernel)));
+    if (const std::string taken = describe(texelUse()); !taken.empty()) reporter.info("  textures: " + taken);
     for (const std::string& left : st.leftOut) reporter.info("  left out: " + left);
     if (!reporter.json())
       for (const std::string& note : scene.notes) reporter.warn(note);

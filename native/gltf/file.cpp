@@ -95,7 +95,15 @@ Bytes mapFile(const std::filesystem::path& path) {
   if (memory == MAP_FAILED) fail(std::strerror(errno));
   madvise(memory, size, MADV_WILLNEED);
   return {{static_cast<const std::byte*>(memory), size},
-          std::shared_ptr<const void>(memory, [size](const void* p) { munmap(const_cast<void*>(p), size); })};
+          std::shared_ptr<const void>(memory, [size](const void* p) { munmap(const_cast<void*>(p), size); }),
+          true};
+}
+
+void Bytes::drop() const {
+  if (!mapped) return;
+  const auto page = static_cast<uintptr_t>(sysconf(_SC_PAGESIZE)), begin = reinterpret_cast<uintptr_t>(data.data());
+  const uintptr_t first = (begin + page - 1) / page * page, end = (begin + data.size()) / page * page;
+  if (end > first) madvise(reinterpret_cast<void*>(first), end - first, MADV_DONTNEED);
 }
 
 GlbChunks splitGlb(const Bytes& whole, const std::string& name, LeftOut& leftOut) {

@@ -20,10 +20,13 @@ namespace wardmis {
 struct Bytes {
   std::span<const std::byte> data;
   std::shared_ptr<const void> owner;
+  bool mapped = false;  // from a file, whose pages come back when they are read
 
   size_t size() const { return data.size(); }
   // The caller has checked the range.
-  Bytes part(size_t offset, size_t length) const { return {data.subspan(offset, length), owner}; }
+  Bytes part(size_t offset, size_t length) const { return {data.subspan(offset, length), owner, mapped}; }
+  // Lets go of the memory of what has been read.
+  void drop() const;
 };
 
 // Maps a regular file into memory. Throws Error(kFile).

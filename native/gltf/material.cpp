@@ -443,9 +443,9 @@ void Materials::bake(const Bake& bake, ImageBudget& budget) {
   if (!budget.take(10 * texels))
     bake.json.fail("its textures are too large to be combined",
                    "give baseColorTexture and metallicRoughnessTexture one size");
-  Image diffuse{"", width, height, 3, true, std::vector<uint8_t>(3 * texels), {}};
+  Image diffuse{"", width, height, 3, true, Texels<uint8_t>(3 * texels), {}};
   Image specular = diffuse;
-  Image alpha{"", width, height, 1, false, {}, std::vector<float>(texels)};
+  Image alpha{"", width, height, 1, false, {}, Texels<float>(texels)};
   tbb::parallel_for(0, height, [&](int y) {
     for (int x = 0; x < width; x++) {
       const Vec2f uv{(static_cast<float>(x) + 0.5f) / static_cast<float>(width),
@@ -533,7 +533,10 @@ void Materials::finish(Scene& scene) {
   for (PendingImage& p : pending_) bytes.push_back(fetch(p));
   ImageBudget budget(buffers_.fileBytes());
   std::vector<DecodedImage> decoded(pending_.size());
-  tbb::parallel_for(size_t(0), decoded.size(), [&](size_t i) { decoded[i] = decode(pending_[i], bytes[i], budget); });
+  tbb::parallel_for(size_t(0), decoded.size(), [&](size_t i) {
+    decoded[i] = decode(pending_[i], bytes[i], budget);
+    bytes[i].drop();
+  });
   for (size_t i = 0; i < pending_.size(); i++) {
     Image image = std::move(decoded[i].image);
     image.name = pending_[i].json.name();

@@ -9,6 +9,7 @@
 
 #include "image/file.h"
 #include "image/texture.h"
+#include "math/error.h"
 
 namespace wardmis {
 namespace {
@@ -61,6 +62,8 @@ DecodedImage decodeImage(std::span<const std::byte> file, Encoding encoding, Ima
   FileImage read;
   try {
     read = readImageFile(file);
+  } catch (const Error&) {  // no memory
+    throw;
   } catch (const std::runtime_error& e) {
     return lostImage(e.what());
   }

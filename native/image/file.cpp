@@ -48,7 +48,7 @@ Image sized(Bytes file, int64_t width, int64_t height, int channels) {
 
 // From rows that begin at the top to rows that begin at the bottom.
 template <class T>
-void turnOver(std::vector<T>& values, const Image& image) {
+void turnOver(Texels<T>& values, const Image& image) {
   const size_t row = size_t(image.width) * image.channels;
   for (int y = 0; y < image.height / 2; ++y)
     std::swap_ranges(values.begin() + y * row, values.begin() + (y + 1) * row,
@@ -112,7 +112,7 @@ FileImage decodePng(Bytes file) {
       sized(file, png_get_image_width(png, info), png_get_image_height(png, info), png_get_channels(png, info));
   const bool deep = png_get_bit_depth(png, info) == 16;
   const size_t rowBytes = png_get_rowbytes(png, info);
-  std::vector<uint8_t> pixels(rowBytes * image.height);
+  Texels<uint8_t> pixels(rowBytes * image.height);
   std::vector<png_bytep> rows(image.height);  // the file's first row is the image's top
   for (int y = 0; y < image.height; ++y) rows[y] = pixels.data() + rowBytes * (image.height - 1 - y);
   if (!pngReadRows(reader, rows.data())) fail(std::string("is a damaged PNG file: ") + reader.message.data());

@@ -4,7 +4,8 @@
 
 #include <cstdint>
 #include <string>
-#include <vector>
+
+#include "image/texel_memory.h"
 
 namespace wardmis {
 
@@ -14,8 +15,8 @@ struct Image {
   std::string name;
   int width = 0, height = 0, channels = 0;
   bool srgb = false;
-  std::vector<uint8_t> bytes;  // exactly one of the two is filled
-  std::vector<float> floats;
+  Texels<uint8_t> bytes;  // exactly one of the two is filled
+  Texels<float> floats;
   bool filterEncoded = false;  // sRGB values are filtered as they are, and decoded after that
 };
 

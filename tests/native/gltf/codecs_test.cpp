@@ -150,8 +150,8 @@ TEST(Codecs, ReadsMeshopt) {
 #if WITH_WEBP
 TEST(Codecs, ReadsWebp) {
   for (const int channels : {3, 4}) {
-    const std::vector<uint8_t> pixels =
-        channels == 3 ? std::vector<uint8_t>{1, 2, 3, 4, 5, 6} : std::vector<uint8_t>{1, 2, 3, 255, 4, 5, 6, 128};
+    const Texels<uint8_t> pixels =
+        channels == 3 ? Texels<uint8_t>{1, 2, 3, 4, 5, 6} : Texels<uint8_t>{1, 2, 3, 255, 4, 5, 6, 128};
     uint8_t* file = nullptr;
     const size_t size = channels == 3 ? WebPEncodeLosslessRGB(pixels.data(), 1, 2, 3, &file)
                                       : WebPEncodeLosslessRGBA(pixels.data(), 1, 2, 4, &file);

@@ -136,7 +136,7 @@ TEST(Foreign, ImagesThatAreMissingAreMagenta) {
     b.root["images"] = json::array({image});
     const Scene s = read(b.bytes(), folder.path);
     ASSERT_EQ(s.images.size(), 1u) << said;
-    EXPECT_EQ(s.images[0].bytes, (std::vector<uint8_t>{255, 0, 255})) << said;
+    EXPECT_EQ(s.images[0].bytes, (Texels<uint8_t>{255, 0, 255})) << said;
     ASSERT_EQ(s.notes.size(), 1u) << said;
     expectHas(s.notes[0], said);
     expectHas(s.notes[0], "(needed by material 'Plate'); magenta is shown instead");
@@ -164,18 +164,18 @@ TEST(Foreign, LightOfImagesThatAreMissingIsGrey) {
     const Scene s = read(lost(material).bytes());
     const Material& m = s.materials.at(0);
     const Image& light = s.images.at(s.textures.at(m.emission.texture.texture).image);
-    EXPECT_EQ(light.floats, (std::vector<float>{0.5f, 0.5f, 0.5f})) << material;
+    EXPECT_EQ(light.floats, (Texels<float>{0.5f, 0.5f, 0.5f})) << material;
     ASSERT_EQ(s.notes.size(), 1u);
     expectHas(s.notes[0],
               shows ? "; magenta, and grey where it gives light, is shown instead" : "); grey light is shown instead");
     if (shows) {
-      EXPECT_EQ(s.images.at(s.textures.at(m.diffuse.texture.texture).image).bytes, (std::vector<uint8_t>{255, 0, 255}));
+      EXPECT_EQ(s.images.at(s.textures.at(m.diffuse.texture.texture).image).bytes, (Texels<uint8_t>{255, 0, 255}));
     }
   }
   GlbBuilder b = lost({{"name", "Plate"}});
   b.root["extensions"]["WARDMIS_scene"] = {{"version", 1}, {"world", {{"radiance", {2, 2, 2}}, {"texture", texture}}}};
   const Scene s = read(b.bytes());
-  EXPECT_EQ(s.images.at(s.textures.at(s.worlds.at(0).texture).image).floats, (std::vector<float>{0.5f, 0.5f, 0.5f}));
+  EXPECT_EQ(s.images.at(s.textures.at(s.worlds.at(0).texture).image).floats, (Texels<float>{0.5f, 0.5f, 0.5f}));
   expectHas(s.notes.at(0), "(needed by the world); grey light is shown instead");
 }
 
@@ -191,7 +191,7 @@ TEST(Foreign, TexturesMayNameTheirImageByAnExtension) {
     EXPECT_EQ(read(b).images.at(0).bytes.at(0), 7);
     b.root["textures"][0].erase("extensions");
     const Scene s = read(b);
-    EXPECT_EQ(s.images.at(0).bytes, (std::vector<uint8_t>{255, 0, 255}));
+    EXPECT_EQ(s.images.at(0).bytes, (Texels<uint8_t>{255, 0, 255}));
     EXPECT_TRUE(listHas(s.notes, "textures[0] has no image (needed by material materials[0])"));
   }
   // KTX2 is named

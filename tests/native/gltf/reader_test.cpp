@@ -339,9 +339,9 @@ TEST(Glb, TexturesAsBlenderFiltersThem) {
   EXPECT_EQ(s.textures.at(0).wrapU, Wrap::kClip);
   EXPECT_EQ(s.textures.at(0).wrapV, Wrap::kClip);
   EXPECT_TRUE(s.images.at(0).filterEncoded);
-  EXPECT_EQ(s.images.at(0).bytes, (std::vector<uint8_t>{20, 40, 51, 51}));  // a fifth
+  EXPECT_EQ(s.images.at(0).bytes, (Texels<uint8_t>{20, 40, 51, 51}));  // a fifth
   image["alpha"] = "ignored";
-  EXPECT_EQ(read(b).images.at(0).bytes, (std::vector<uint8_t>{100, 200, 255, 255}));
+  EXPECT_EQ(read(b).images.at(0).bytes, (Texels<uint8_t>{100, 200, 255, 255}));
 }
 
 TEST(Glb, LoadsImagesFromTheFileAndItsFolder) {
@@ -359,7 +359,7 @@ TEST(Glb, LoadsImagesFromTheFileAndItsFolder) {
   const Scene s = readGlb(folder.write("scene.glb", b.bytes()));
   const Material& m = s.materials.at(0);
   const auto image = [&](const TextureUse& use) { return s.images.at(s.textures.at(use.texture).image); };
-  EXPECT_EQ(image(m.diffuse.texture).bytes, (std::vector<uint8_t>{255, 0, 0, 0, 255, 0}));
+  EXPECT_EQ(image(m.diffuse.texture).bytes, (Texels<uint8_t>{255, 0, 0, 0, 255, 0}));
   EXPECT_TRUE(image(m.diffuse.texture).srgb);
   EXPECT_EQ(m.alphaX.texture.texture, -1);     // a channel that the image lacks: alpha is 1
   EXPECT_FALSE(image(m.alphaY.texture).srgb);  // the same file as numbers
@@ -438,7 +438,7 @@ TEST(Glb, MendsImages) {
   GlbBuilder b = textured(ward({{"diffuse", {{"texture", {{"index", 0}}}}}}));
   rawTexture<float>(b, 2, 2, 1, {NAN, -1, INFINITY, 0.5f});
   const Scene s = read(b);
-  EXPECT_EQ(s.images[0].floats, (std::vector<float>{0, -1, 0, 0.5f}));
+  EXPECT_EQ(s.images[0].floats, (Texels<float>{0, -1, 0, 0.5f}));
   EXPECT_TRUE(listHas(s.leftOut, "2 values of image 'Pixels'"));
 }
 
@@ -450,7 +450,7 @@ TEST(Glb, ShowsDamagedImagesInMagenta) {
       json::array({{{"name", "Wood"}, {"bufferView", b.view<uint8_t>({0x89, 'P', 'N', 'G', 13, 10, 26, 10, 0})}}});
   const Scene s = read(b.bytes());
   ASSERT_EQ(s.images.size(), 1u);
-  EXPECT_EQ(s.images[0].bytes, (std::vector<uint8_t>{255, 0, 255}));
+  EXPECT_EQ(s.images[0].bytes, (Texels<uint8_t>{255, 0, 255}));
   ASSERT_EQ(s.notes.size(), 1u);
   expectHas(s.notes[0], "image 'Wood' is a damaged PNG file");
   expectHas(s.notes[0], "(needed by material 'Plate'); magenta is shown instead");

@@ -168,7 +168,7 @@ TEST(ImageFile, Radiance) {
       "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 2\n\x80\x40\x20\x82\0\0\0\0\x01\x02\x03\x88\x80\x80\x80\x81"s));
   EXPECT_FALSE(read.integers);
   EXPECT_EQ(read.image.channels, 3);
-  EXPECT_EQ(read.image.floats, (std::vector<float>{1, 2, 3, 1, 1, 1, 2, 1, 0.5f, 0, 0, 0}));
+  EXPECT_EQ(read.image.floats, (Texels<float>{1, 2, 3, 1, 1, 1, 2, 1, 0.5f, 0, 0, 0}));
 }
 
 // One strip without compression: kWidth x kHeight pixels of valueAt, `bits` each.

@@ -115,7 +115,7 @@ TEST(Texture, IsDefinedEverywhere) {
   const float kStrange[] = {kNan,          kInfinity,      -kInfinity,  3e38f, -3e38f, 1e-45f,     -1e-45f,
                             2147483648.0f, -2147483648.0f, 0.99999994f, 1,     -0.0f,  16777216.0f};
   for (const auto& [width, height] : {std::pair(1, 1), std::pair(2, 2), std::pair(3, 1), std::pair(65536, 1)}) {
-    const Image image{"", width, height, 1, false, {}, std::vector<float>(size_t(width) * height, 0.5f)};
+    const Image image{"", width, height, 1, false, {}, Texels<float>(size_t(width) * height, 0.5f)};
     for (const Wrap wrap : {Wrap::kRepeat, Wrap::kClamp, Wrap::kMirror})
       for (const Filter filter : {Filter::kLinear, Filter::kNearest, Filter::kCubic})
         for (const float u : kStrange)

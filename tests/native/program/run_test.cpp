@@ -117,7 +117,7 @@ TEST(Run, PatternsAreGivenTheirArguments) {
 // Every operation comes to an end, within what it may read and write, whatever its arguments are.
 TEST(Run, IsDefinedForEveryNumber) {
   const float kValues[] = {0, -0.0f, 1, -1, 1e-30f, 1e30f, -1e30f, INFINITY, -INFINITY, NAN};
-  const Image texels{"", 2, 2, 4, false, {}, std::vector<float>(16, 0.5f), false};
+  const Image texels{"", 2, 2, 4, false, {}, Texels<float>(16, 0.5f), false};
   const Texture texture{0, Wrap::kMirror, Wrap::kClip, Filter::kCubic};
   uint32_t state = 1;
   ShadingContext context;
