@@ -115,6 +115,24 @@ inline std::array<float, 4> cubicWeights(float t) {
   return {s * s * s / 6, (4 + t * t * (3 * t - 6)) / 6, (4 + s * s * (3 * s - 6)) / 6, t * t * t / 6};
 }
 
+// Asks for the texels that a bilinear look-up at uv in [0, 1]^2 reads; the edges' own are left to it.
+inline void prefetch(const Image& image, Vec2f uv) {
+  const auto at = [](float u, int n) {
+    return std::clamp(static_cast<int>(u * static_cast<float>(n) - 0.5f), 0, std::max(0, n - 2));
+  };
+  const size_t row = size_t(image.width) * image.channels;
+  const size_t first = at(uv.y, image.height) * row + size_t(at(uv.x, image.width)) * image.channels;
+  const auto ask = [&](const auto* texels) {
+    const auto* next = texels + (image.height > 1 ? row : 0);
+    const int last = std::min(2, image.width) * image.channels - 1;  // of the two texels side by side
+    for (const auto* texel : {texels, texels + last, next, next + last}) fetch(texel);
+  };
+  if (image.bytes.empty())
+    ask(&image.floats[first]);
+  else
+    ask(&image.bytes[first]);
+}
+
 // Filtered look-up of texel(index), u to the right, v up, (0, 0) the bottom left corner.
 template <class F>
 auto lookUp(const Image& image, const Texture& texture, Vec2f uv, F texel) {
@@ -135,9 +153,19 @@ auto lookUp(const Image& image, const Texture& texture, Vec2f uv, F texel) {
     for (int i = 0; i < 4; i++) sum = sum + at(column(x.i + i - 1), row(y.i + j - 1)) * (wx[i] * wy[j]);
   return sum;
 }
+// Filtered as they are stored, 8 bits by `table`. Which storage it is is asked once, not for every texel.
+inline Rgb lookUpStored(const Image& image, const Texture& texture, Vec2f uv, const std::array<float, 256>& table) {
+  const size_t n = image.channels, g = n >= 3 ? 1 : 0, b = 2 * g;  // grey stands for all three
+  if (image.bytes.empty())
+    return lookUp(image, texture, uv, [=, t = image.floats.data()](size_t i) {
+      return Rgb{t[i * n], t[i * n + g], t[i * n + b]};
+    });
+  return lookUp(image, texture, uv, [=, &table, t = image.bytes.data()](size_t i) {
+    return Rgb{table[t[i * n]], table[t[i * n + g]], table[t[i * n + b]]};
+  });
+}
 inline Rgb lookUpRgb(const Image& image, const Texture& texture, Vec2f uv) {
-  const auto& table = kByteToLinear[image.srgb && !image.filterEncoded];
-  const Rgb c = lookUp(image, texture, uv, [&](size_t i) { return storedRgb(image, i, table); });
+  const Rgb c = lookUpStored(image, texture, uv, kByteToLinear[image.srgb && !image.filterEncoded]);
   return image.filterEncoded ? decodeFiltered(c) : c;
 }
 inline float lookUpScalar(const Image& image, const Texture& texture, Vec2f uv, int channel) {

@@ -167,12 +167,17 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     for (size_t l = 0; l < kLobes; ++l) present[l] = s.hasLobe(l) && (kGeneral || woFloat.z > 0);
   present[kCosine] = kDiff && s.hasDiffuse();
 
+  const auto indexOf = [&](size_t t, int m) { return plan.firstPoint[t] + static_cast<uint32_t>(m); };
+  Scratch<LightChoice, kMaxSamplesPerHit> lights;  // first of all, see Emitters::choose()
+  for (int m = 0; m < n[kLight]; ++m)
+    lights.set(m, world.emitters.choose(sampler.getChoice(
+                      plan.pixelKey, dimension + Dimensions<K>::kTechnique + uint32_t{kLight}, indexOf(kLight, m))));
+
   // Draw the directions of all techniques.
   LobeBatch<T, kLobes, kMaxSamplesPerHit> batch;
   Scratch<LightSample, kMaxSamplesPerHit> light;
   using LobeSample = typename LobeSurface<K>::Sample;
   Scratch<LobeSample, kGeneral ? kMaxSamplesPerHit : 1> from;  // of which lobe
-  const auto indexOf = [&](size_t t, int m) { return plan.firstPoint[t] + static_cast<uint32_t>(m); };
   const auto point = [&](size_t t, int m) {
     return sampler.get2D(plan.pixelKey, dimension + Dimensions<K>::kTechnique + static_cast<uint32_t>(t),
                          indexOf(t, m));
@@ -205,11 +210,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     }
   end[kCosine] = j;
   for (int m = 0; m < n[kLight]; ++m, ++j) {
-    light.set(j, world.emitters.sample(
-                     x.position,
-                     sampler.getChoice(plan.pixelKey, dimension + Dimensions<K>::kTechnique + uint32_t{kLight},
-                                       indexOf(kLight, m)),
-                     static_cast<int>(plan.vertex), x.path.time));
+    light.set(j, world.emitters.sample(x.position, lights[m], static_cast<int>(plan.vertex), x.path.time));
     const Vec3f wi = x.frame.toLocal(light[j].direction);
     batch.set(j, {T(wi.x), T(wi.y), T(wi.z)});
   }
@@ -329,9 +330,10 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     }
 
     if (t == kLight) {
-      const LightSample& l = light[k];
-      if (!(l.pdf > 0) || !(kGeneral || dot(x.geometric, l.direction) > 0) || isBlack(l.radiance)) continue;
-      if (!(maxComponent(total(f)) > 0)) continue;
+      LightSample& l = light[k];
+      if (!(l.pdf > 0) || !(kGeneral || dot(x.geometric, l.direction) > 0) || !(maxComponent(total(f)) > 0)) continue;
+      world.emitters.look(l, x.position, static_cast<int>(plan.vertex));
+      if (!(l.pdf > 0) || isBlack(l.radiance)) continue;
       Ray shadow;
       shadow.origin = x.leave(l.direction);
       shadow.direction = l.direction;
@@ -394,6 +396,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
                                                (ahead ? kReflectionRay : kTransmissionRay)),
                          x.rayLength);
     ++counts.rays[t];
+    const Environment::Place sky = world.emitters.skyAhead(d);
     Rgb seenThrough{1, 1, 1};
     // What light samples aim at is hidden beyond what they pass: the image must not depend on how many there are.
     const auto isHidden = [&](float pdf) {
@@ -403,11 +406,12 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     const uint32_t key = combine(combine(plan.pixelKey, dimension + static_cast<uint32_t>(t)),
                                  plan.index * uint32_t{kMaxSamplesPerHit} + static_cast<uint32_t>(k));
     const Hit hit = trace<N, K>(world, ray, key, seenThrough, [&](float tMax, bool escaped) {
-      world.emitters.along(ray, tMax, escaped, static_cast<int>(plan.vertex), [&](const EmitterHit& e) {
+      const auto meet = [&](const EmitterHit& e) {
         if (isHidden(e.pdf)) return;
         p[kLight] = e.pdf;
         add(t, sharp, ahead, f, kGeneral ? e.radiance * seenThrough : e.radiance, p, e.visibility, set);
-      });
+      };
+      world.emitters.along(ray, tMax, escaped, static_cast<int>(plan.vertex), meet, sky);
     });
     if (!hit.valid()) continue;
     const Shape& shape = world.geometry.shapes[hit.shape];

@@ -24,8 +24,7 @@ inline ColorAlpha lookUp(const TextureAccess& access, uint32_t index, Vec2f uv, 
     r.alpha = lookUpScalar(image, texture, uv, image.channels - 1);
   else
     r.alpha = texture.wrapU == Wrap::kClip ? wardmis::lookUp(image, texture, uv, [](size_t) { return 1.0f; }) : 1;
-  const auto& table = kByteToLinear[image.srgb && !image.filterEncoded];
-  r.color = wardmis::lookUp(image, texture, uv, [&](size_t i) { return storedRgb(image, i, table); });
+  r.color = lookUpStored(image, texture, uv, kByteToLinear[image.srgb && !image.filterEncoded]);
   if (unassociate && r.alpha != 0 && r.alpha != 1) r.color = r.color / r.alpha;
   if (image.filterEncoded) r.color = decodeFiltered(r.color);
   return r;

@@ -2,9 +2,12 @@
 // Discrete sampling in constant time (Walker 1977, Vose 1991).
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
+
+#include "math/table.h"
 
 namespace wardmis {
 
@@ -46,17 +49,20 @@ class AliasTable {
       drawn[i] += own;
       drawn[entries_[i].alias] += 1 - own;
     }
-    for (std::size_t i = 0; i < n; ++i) entries_[i].probability = static_cast<float>(drawn[i] / static_cast<double>(n));
+    probabilities_.resize(n);
+    for (std::size_t i = 0; i < n; ++i) probabilities_[i] = static_cast<float>(drawn[i] / static_cast<double>(n));
   }
 
   bool empty() const { return entries_.empty(); }
   double sum() const { return sum_; }
-  float probability(uint32_t i) const { return entries_[i].probability; }
+  float probability(uint32_t i) const { return probabilities_[i]; }
+  // Asks for what sample(u) and probability(i) read: in a table of millions each is a wait for memory.
+  void prefetch(double u) const { fetch(&entries_[slot(u)]); }
+  void prefetchProbability(uint32_t i) const { fetch(&probabilities_[i]); }
   // u in [0, 1), a multiple of 2^-53, is replaced by what is left of it, again uniform in [0, 1).
   uint32_t sample(double& u) const {
     const double x = u * static_cast<double>(entries_.size());
-    uint32_t i = static_cast<uint32_t>(x);
-    if (i >= entries_.size()) i = static_cast<uint32_t>(entries_.size()) - 1;
+    uint32_t i = slot(u);
     const double rest = x - i;
     const Entry& e = entries_[i];
     const auto threshold = double(e.threshold);
@@ -71,6 +77,9 @@ class AliasTable {
   }
 
  private:
+  uint32_t slot(double u) const {
+    return static_cast<uint32_t>(std::min(u * static_cast<double>(entries_.size()), double(entries_.size() - 1)));
+  }
   static uint32_t heaviest(const std::vector<double>& w) {
     uint32_t best = 0;
     for (std::size_t i = 1; i < w.size(); ++i)
@@ -78,10 +87,11 @@ class AliasTable {
     return best;
   }
   struct Entry {
-    float threshold = 1, probability = 0;
+    float threshold = 1;
     uint32_t alias = 0;
   };
-  std::vector<Entry> entries_;
+  Table<Entry> entries_;
+  Table<float> probabilities_;  // apart: a draw reads one entry, who meets something a probability
   double sum_ = 0;
 };
 

@@ -191,6 +191,7 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Env
     sky_ |= (l.visibility & kSeenBySurfaces) != 0;
     power.push_back(environment.sampled() ? environment.integral() * crossSection : 0.0);
     shared_ |= environment.sampled();
+    if (environment.tabulated()) skyAhead_ = &environment;
   }
 
   TriangleLuminance luminances(scene);
@@ -292,11 +293,28 @@ double Emitters::meanFactor(const Lamp& lamp, float distance) const {
   return std::max({mean, kLeastOfMost * most, mean > 0 ? 0 : kLeast});
 }
 
-LightSample Emitters::sample(Vec3f from, ChoicePoint point, int bounces, float time) const {
+LightChoice Emitters::choose(ChoicePoint u) const {
+  LightChoice c;
+  c.point = u;
+  c.emitter = table_.sample(c.point.x);
+  c.probability = table_.probability(c.emitter);
+  if (c.emitter < lamps_.size() && lamps_[c.emitter].kind == Kind::kEnvironment)
+    environments_[lamps_[c.emitter].environment].prefetch(c.point);
+  return c;
+}
+
+void Emitters::look(LightSample& s, Vec3f from, int bounces) const {
+  if (s.sky.sky == nullptr) return;
+  const Environment::Look look = s.sky.sky->look(s.sky, {from, false, bounces});
+  s.radiance = look.radiance;
+  s.pdf *= look.pdf;
+  s.sky.sky = nullptr;
+}
+
+LightSample Emitters::sample(Vec3f from, const LightChoice& choice, int bounces, float time) const {
   LightSample s;
-  const uint32_t index = table_.sample(point.x);
-  const Vec2f u{toCoordinate(point.x), point.y};
-  const float choice = table_.probability(index);
+  const uint32_t index = choice.emitter;
+  const Vec2f u{toCoordinate(choice.point.x), choice.point.y};
   if (index >= lamps_.size()) {
     const Triangle& e = emissive_[index - lamps_.size()];
     const Placement& p = geometry_.placements[e.placement];
@@ -312,7 +330,7 @@ LightSample Emitters::sample(Vec3f from, ChoicePoint point, int bounces, float t
     s.direction = to / s.distance;
     const float cosArea = std::abs(dot(s.direction, n)) * 0.5f;
     if (!(cosArea > 0)) return s;
-    s.pdf = choice * t2 / cosArea;
+    s.pdf = choice.probability * t2 / cosArea;
     const ColorInput& emission = scene_.materials[static_cast<size_t>(shape.material)].emission;
     s.radiance = emission.value;
     if (emission.result >= 0) {
@@ -403,21 +421,22 @@ LightSample Emitters::sample(Vec3f from, ChoicePoint point, int bounces, float t
     case Kind::kEnvironment: {
       const Environment& environment = environments_[lamp.environment];
       s.distance = kFar;
-      s.direction = environment.sample(point);
-      s.radiance = environment.radiance(s.direction, {from, false, bounces});
-      s.pdf = environment.pdf(s.direction);
+      s.sky = environment.sample(choice.point);
+      s.direction = s.sky.direction;
+      s.pdf = 1;
       break;
     }
   }
   if (lamp.light != nullptr && s.pdf > 0) s.radiance *= factor(lamp, from, s.direction, s.distance, bounces);
-  s.pdf *= choice;
+  s.pdf *= choice.probability;
   s.visibility = lamp.visibility;
   s.shadow = lamp.shadow;
   s.exclusive = lamp.exclusive;
   return s;
 }
 
-bool Emitters::meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax, int bounces, EmitterHit& hit) const {
+bool Emitters::meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax, int bounces,
+                     const Environment::Place& ahead, EmitterHit& hit) const {
   const Vec3f d = ray.direction;
   // where two lobes share a technique, both get what any of its rays meets: who sees it is the estimator's to say
   const int seers = ray.kind == kSeenByCamera ? kSeenByCamera : kSeenBySurfaces;
@@ -474,10 +493,18 @@ bool Emitters::meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax,
       hit.radiance = lamp.emitted / cos3;
       break;
     }
-    case Kind::kEnvironment:
-      pdf = environments_[lamp.environment].pdf(d);
-      hit.radiance = environments_[lamp.environment].radiance(d, {ray.origin, seers == kSeenByCamera, bounces});
+    case Kind::kEnvironment: {
+      const Environment& environment = environments_[lamp.environment];
+      const SkyRay from{ray.origin, seers == kSeenByCamera, bounces};
+      if (from.camera) {  // who does not ask for a density
+        hit.radiance = environment.radiance(d, from);
+        break;
+      }
+      const Environment::Look look = environment.look(ahead.sky == &environment ? ahead : environment.find(d), from);
+      pdf = look.pdf;
+      hit.radiance = look.radiance;
       break;
+    }
     case Kind::kDeltaPoint:
     case Kind::kDeltaSun:
       return false;

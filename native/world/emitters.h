@@ -20,10 +20,18 @@ struct LightSample {
   Rgb radiance{0, 0, 0};     // arriving, without occlusion; of a delta light: irradiance facing it
   float pdf =
       0;  // per solid angle, the choice of the emitter included; of a delta light: of the choice; 0: nothing arrives
+  Environment::Place sky;  // of an environment: radiance and density are still to be looked up there
   bool exclusive = false;  // no other technique meets this emitter: a delta light, or one without shadows
   bool shadow = true;      // occluders count
   PrimitiveId on;          // the triangle, which is not an occluder itself
   uint8_t visibility = kSeenByAll;
+};
+
+// An emitter that was drawn, and what is left of the random numbers.
+struct LightChoice {
+  uint32_t emitter = 0;
+  float probability = 0;
+  ChoicePoint point{};
 };
 
 // What a ray meets: one emitter.
@@ -50,14 +58,21 @@ class Emitters {
   bool anyStrands() const { return strands_; }
   uint64_t emissiveTriangles() const { return triangles_; }
 
-  // bounces: by which the path has come to `from`; time: of the path.
-  LightSample sample(Vec3f from, ChoicePoint u, int bounces = 0, float time = kMiddle) const;
+  // A sample is made in three steps, each of which asks for the memory that the next one reads: work between them hides
+  // the wait. bounces: by which the path has come to `from`; time: of the path.
+  LightChoice choose(ChoicePoint u) const;
+  LightSample sample(Vec3f from, const LightChoice& choice, int bounces = 0, float time = kMiddle) const;
+  void look(LightSample& sample, Vec3f from, int bounces = 0) const;
+  // Where a ray of this direction meets the sky, if it does: for along(). Of several skies that are images, of one.
+  Environment::Place skyAhead(Vec3f direction) const {
+    return skyAhead_ ? skyAhead_->find(direction) : Environment::Place{};
+  }
 
   // Calls f(EmitterHit) for each light object that the ray meets before tMax, and, where the ray goes on for ever
   // (escaped), for the environment and suns. bounces: by which the path has come to the ray's origin; 0 from the
   // camera.
   template <class F>
-  void along(const Ray& ray, float tMax, bool escaped, int bounces, F&& f) const;
+  void along(const Ray& ray, float tMax, bool escaped, int bounces, F&& f, const Environment::Place& ahead = {}) const;
 
   // The emissive triangle that was hit.
   float trianglePdf(const Placement& p, const Hit& hit, Vec3f direction, float time = kMiddle) const;
@@ -89,7 +104,8 @@ class Emitters {
   Rgb factor(const Lamp& lamp, Vec3f from, Vec3f d, float t, int bounces) const;
   // The mean of that over directions, by the light that goes there.
   double meanFactor(const Lamp& lamp, float distance) const;
-  bool meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax, int bounces, EmitterHit& hit) const;
+  bool meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax, int bounces, const Environment::Place& ahead,
+             EmitterHit& hit) const;
 
   const Scene& scene_;
   const Geometry& geometry_;
@@ -101,18 +117,20 @@ class Emitters {
   std::vector<Triangle> emissive_;           // emitters lamps_.size() ...
   AliasTable table_;                         // over lamps, then emissive triangles
   std::vector<uint32_t> finite_, infinite_;  // indices of the lamps that a ray can meet
+  const Environment* skyAhead_ = nullptr;
   bool shared_ = false, exclusive_ = false, sky_ = false, strands_ = false;
   uint64_t triangles_ = 0;
 };
 
 template <class F>
-void Emitters::along(const Ray& ray, float tMax, bool escaped, int bounces, F&& f) const {
+void Emitters::along(const Ray& ray, float tMax, bool escaped, int bounces, F&& f,
+                     const Environment::Place& ahead) const {
   EmitterHit hit;
   for (uint32_t i : finite_)
-    if (bounces <= lamps_[i].maxBounces && meets(lamps_[i], i, ray, tMax, bounces, hit)) f(hit);
+    if (bounces <= lamps_[i].maxBounces && meets(lamps_[i], i, ray, tMax, bounces, ahead, hit)) f(hit);
   if (!escaped) return;
   for (uint32_t i : infinite_)
-    if (bounces <= lamps_[i].maxBounces && meets(lamps_[i], i, ray, tMax, bounces, hit)) f(hit);
+    if (bounces <= lamps_[i].maxBounces && meets(lamps_[i], i, ray, tMax, bounces, ahead, hit)) f(hit);
 }
 
 }  // namespace wardmis

@@ -13,11 +13,10 @@ namespace wardmis {
 namespace {
 
 // Equirectangular coordinates of a direction of any length, z up (docs/scene-format.md): u = 1/2 at +x... as Cycles.
-Vec2f equirectangular(Vec3f d) {
-  const float u = (std::atan2(d.y, d.x) - kPi<float>) / (-2 * kPi<float>);
-  const float v = 1 - std::atan2(std::sqrt(d.x * d.x + d.y * d.y), d.z) / kPi<float>;  // acos is coarse at the poles
-  return {u, v};
+float heightOf(Vec3f d) {
+  return 1 - atan2(std::sqrt(d.x * d.x + d.y * d.y), d.z) * (1 / kPi<float>);  // acos is coarse at the poles
 }
+Vec2f equirectangular(Vec3f d) { return {0.5f - atan2(d.y, d.x) * (0.5f / kPi<float>), heightOf(d)}; }
 
 // Those of a mirror ball about z, seen from -z: its disk has the same area for each solid angle, its radius at the
 // angle t from -z is sin(t/2).
@@ -71,7 +70,7 @@ void Environment::measureCone() {
   for (int y = 0; y < kPoints; ++y)
     for (int x = 0; x < kPoints; ++x) {
       const ChoicePoint u{(x + 0.5) / kPoints, (static_cast<float>(y) + 0.5f) / kPoints};
-      sum += double(strength(radiance(sample(u))));
+      sum += double(strength(radiance(sample(u).direction)));
     }
   integral_ = static_cast<float>(sum / (kPoints * kPoints) * 2 * kPi<double> * double(oneMinusCos_));
 }
@@ -82,7 +81,8 @@ void Environment::makeBands() {
     const double step = kPi<double> / height_, from = step * (up ? height_ - 1 - y : y);
     const auto fromPole = [](double angle) { return 2 * std::pow(std::sin(angle / 2), 2); };
     const double height = 2 * std::sin(from + step / 2) * std::sin(step / 2);
-    bands_.push_back({static_cast<float>(fromPole(from)), static_cast<float>(height), up});
+    bands_.push_back({static_cast<float>(fromPole(from)), static_cast<float>(height), up,
+                      static_cast<float>(width_ / (2 * kPi<double> * height))});
   }
 }
 
@@ -104,7 +104,8 @@ void Environment::tabulateProgram() {
     const float z = static_cast<float>(-std::cos(polar)), r = static_cast<float>(std::sin(polar));
     for (size_t i = 0; i < columns; ++i) {
       const double phi = kPi<double> - 2 * kPi<double> * double(i) / double(columns);
-      const Vec3f d = fromImage({r * static_cast<float>(std::cos(phi)), r * static_cast<float>(std::sin(phi)), z});
+      const Vec3f d =
+          normalize(fromImage({r * static_cast<float>(std::cos(phi)), r * static_cast<float>(std::sin(phi)), z}));
       const float value = strength(radiance(d));
       grid[j * columns + i] = std::isfinite(value) ? value : 0;
     }
@@ -135,6 +136,7 @@ void Environment::tabulateImage() {
   // The table's cells hold the image's luminance, taken over each cell from a grid of looked-up values, so that the
   // density is positive wherever the interpolated image is.
   const Image& image = scene.images[static_cast<size_t>(scene.textures[static_cast<size_t>(world.texture)].image)];
+  image_ = &image;
   const bool ball = world.map == SkyMap::kMirrorBall;
   // of a ball: the rim, and a meridian at the middle, where it is the finest
   const int side = std::max(image.width, image.height);
@@ -163,7 +165,8 @@ void Environment::tabulateImage() {
                             static_cast<float>(height_);
             sum += strength(sampleRgb(scene, use, uvOf(u, v)) * world.radiance);
           }
-        const float stretched = stretch(toImage(fromImage(inCell(x, static_cast<size_t>(y), 0.5f, 0.5f))));
+        const Vec3f middle = inCell(static_cast<uint32_t>(x), static_cast<uint32_t>(y), 0.5f, 0.5f);
+        const float stretched = stretch(toImage(normalize(fromImage(middle))));
         weights[static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x)] =
             sum / double((subX + 1) * (subY + 1)) * band * 2 * kPi<double> / width_ / double(stretched);
       }
@@ -187,8 +190,8 @@ Vec3f Environment::toImage(Vec3f d) const {
 
 Vec3f Environment::fromImage(Vec3f d) const {
   const float* m = inverse_;
-  const Vec3f z = normalize(Vec3f{m[0] * d.x + m[1] * d.y + m[2] * d.z, m[3] * d.x + m[4] * d.y + m[5] * d.z,
-                                  m[6] * d.x + m[7] * d.y + m[8] * d.z});
+  const Vec3f z{m[0] * d.x + m[1] * d.y + m[2] * d.z, m[3] * d.x + m[4] * d.y + m[5] * d.z,
+                m[6] * d.x + m[7] * d.y + m[8] * d.z};
   return scene_.zUp ? Vec3f{z.x, z.z, -z.y} : z;
 }
 
@@ -196,38 +199,68 @@ Rgb Environment::radiance(Vec3f direction, const SkyRay& ray) const {
   if (oneMinusCos_ > 0 && !inCone(direction)) return {0, 0, 0};
   if (world_.program) return skyRadiance(scene_, world_, direction, ray);
   if (world_.texture < 0) return world_.radiance;
+  const Vec3f image = toImage(direction);
+  return imageAt(world_.map == SkyMap::kMirrorBall ? mirrorBall(image) : equirectangular(image));
+}
+
+Rgb Environment::imageAt(Vec2f uv) const {
   TextureUse use;
   use.texture = world_.texture;
-  const Vec3f image = toImage(direction);
-  const Vec2f uv = world_.map == SkyMap::kMirrorBall ? mirrorBall(image) : equirectangular(image);
   return world_.radiance * sampleRgb(scene_, use, uv);
 }
 
+Environment::Place Environment::find(Vec3f direction) const {
+  Place p{this, direction, 0, 0, {0, 0}};
+  if (oneMinusCos_ > 0) p.density = inCone(direction) ? 1 / (2 * kPi<float> * oneMinusCos_) : 0;
+  if (!tabulated()) return p;
+  const Vec3f image = toImage(direction);
+  p.uv = equirectangular(image);
+  const int x = std::clamp(static_cast<int>(p.uv.x * static_cast<float>(width_)), 0, width_ - 1);
+  const int y = std::clamp(static_cast<int>(p.uv.y * static_cast<float>(height_)), 0, height_ - 1);
+  p.cell = static_cast<uint32_t>(y * width_ + x);
+  p.density = bands_[static_cast<size_t>(y)].density * stretch(image);
+  if (world_.map == SkyMap::kMirrorBall) p.uv = mirrorBall(image);
+  prefetch(p);
+  return p;
+}
+
+void Environment::prefetch(const Place& place) const {
+  table_.prefetchProbability(place.cell);
+  if (image_ != nullptr) wardmis::prefetch(*image_, place.uv);
+}
+
+Environment::Look Environment::look(const Place& p, const SkyRay& ray) const {
+  if (!tabulated()) return {radiance(p.direction, ray), p.density};
+  return {world_.program ? radiance(p.direction, ray) : imageAt(p.uv), table_.probability(p.cell) * p.density};
+}
+
 // Of the image's frame, uniform in the cell's solid angle: in azimuth and in cos of the polar angle.
-Vec3f Environment::inCell(int x, size_t y, float u, float v) const {
+Vec3f Environment::inCell(uint32_t x, uint32_t y, float u, float v) const {
   const Band& band = bands_[y];
   const float t = band.begin + v * band.height;  // 1 - cos of the angle to the pole
   const float r = std::sqrt(std::max(0.0f, t * (2 - t)));
-  const float phi = kPi<float> - 2 * kPi<float> * ((static_cast<float>(x) + u) / static_cast<float>(width_));
-  return {r * std::cos(phi), r * std::sin(phi), band.up ? 1 - t : t - 1};
+  float sine, cosine;  // of the azimuth, which is pi less this
+  sincos2Pi((static_cast<float>(x) + u) / static_cast<float>(width_), sine, cosine);
+  return {-r * cosine, r * sine, band.up ? 1 - t : t - 1};
 }
 
-Vec3f Environment::sample(ChoicePoint u) const {
-  if (oneMinusCos_ > 0) return Framef::around(axis_).toWorld(toCone(Vec2f{toCoordinate(u.x), u.y}, oneMinusCos_));
+Environment::Place Environment::sample(ChoicePoint u) const {
+  if (oneMinusCos_ > 0) {
+    const Vec3f d = Framef::around(axis_).toWorld(toCone(Vec2f{toCoordinate(u.x), u.y}, oneMinusCos_));
+    return {this, d, 0, 1 / (2 * kPi<float> * oneMinusCos_), {0, 0}};
+  }
   const uint32_t cell = table_.sample(u.x);
-  const auto width = static_cast<uint32_t>(width_);
-  return fromImage(inCell(static_cast<int>(cell % width), cell / width, toCoordinate(u.x), u.y));
-}
-
-float Environment::pdf(Vec3f direction) const {
-  if (oneMinusCos_ > 0) return inCone(direction) ? 1 / (2 * kPi<float> * oneMinusCos_) : 0;
-  if (table_.empty()) return 0;
-  const Vec3f image = toImage(direction);
-  const Vec2f uv = equirectangular(image);
-  const int x = std::clamp(static_cast<int>(uv.x * static_cast<float>(width_)), 0, width_ - 1);
-  const int y = std::clamp(static_cast<int>(uv.y * static_cast<float>(height_)), 0, height_ - 1);
-  const float solidAngle = bands_[static_cast<size_t>(y)].height * 2 * kPi<float> / static_cast<float>(width_);
-  return table_.probability(static_cast<uint32_t>(y * width_ + x)) / solidAngle * stretch(image);
+  const uint32_t y = cell / static_cast<uint32_t>(width_), x = cell - y * static_cast<uint32_t>(width_);
+  const float across = toCoordinate(u.x);
+  const Vec3f image = inCell(x, y, across, u.y), world = fromImage(image);
+  const float l = length(world);  // 1 / that of toImage() of the unit vector
+  Place p{this, world / l, cell, bands_[y].density * determinant_ * l * l * l, {0, 0}};
+  if (world_.map == SkyMap::kMirrorBall)
+    p.uv = mirrorBall(image);
+  else
+    p.uv = {(static_cast<float>(x) + across) / static_cast<float>(width_), heightOf(image)};
+  prefetch(p);
+  return p;
 }
 
 std::vector<Environment> environmentsOf(const Scene& scene) {

@@ -23,9 +23,30 @@ class Environment {
   float integral() const { return integral_; }
 
   Rgb radiance(Vec3f direction, const SkyRay& ray = {}) const;
-  // A direction of density pdf(direction), per solid angle.
-  Vec3f sample(ChoicePoint u) const;
-  float pdf(Vec3f direction) const;
+  // A place in the sky's tables. They are larger than the processor's caches, and directions are random: who finds a
+  // place asks for what look() will read there, and work between the two hides a wait that would be longer than all the
+  // rest of a path.
+  struct Place {
+    const Environment* sky = nullptr;  // whose place it is; null: nobody's
+    Vec3f direction{0, 0, 1};          // unit
+    uint32_t cell = 0;
+    float density = 0;  // of directions in the cell, per solid angle
+    Vec2f uv{0, 0};     // in the sky's image
+  };
+  // Draws a direction; prefetch(u) asks for what that reads.
+  Place sample(ChoicePoint u) const;
+  void prefetch(ChoicePoint u) const {
+    if (tabulated()) table_.prefetch(u.x);
+  }
+  Place find(Vec3f direction) const;
+  // The radiance that comes from there, and the density of sample(), per solid angle; 0 where !sampled().
+  struct Look {
+    Rgb radiance;
+    float pdf;
+  };
+  Look look(const Place& place, const SkyRay& ray = {}) const;
+  Look look(Vec3f direction, const SkyRay& ray = {}) const { return look(find(direction), ray); }
+  bool tabulated() const { return !table_.empty(); }
 
  private:
   void tabulateImage();
@@ -38,14 +59,17 @@ class Environment {
   }
   // World -> the frame of the table, not normalised: the world's matrix may be any that has an inverse.
   Vec3f toImage(Vec3f world) const;
-  Vec3f fromImage(Vec3f image) const;  // unit -> unit
-  Vec3f inCell(int x, size_t y, float u, float v) const;
+  Vec3f fromImage(Vec3f image) const;  // not normalised
+  Vec3f inCell(uint32_t x, uint32_t y, float u, float v) const;
+  void prefetch(const Place& place) const;
+  Rgb imageAt(Vec2f uv) const;
   // Solid angle in the image's frame over that of the world, where `image` is toImage() of a unit vector: a linear map
   // M takes the solid angle dw at d to |det M| / |M d|^3 dw.
   float stretch(Vec3f image) const { return determinant_ / (dot(image, image) * length(image)); }
 
   const Scene& scene_;
   const World& world_;
+  const Image* image_ = nullptr;  // of the world's texture
   bool exists_ = false;
   float integral_ = 0;
   Vec3f axis_{0, 0, 1};    // of a sky that is within a cone alone
@@ -61,6 +85,7 @@ class Environment {
   struct Band {
     float begin, height;  // of 1 - cos: at the border towards that pole, and between the borders
     bool up;              // the pole is +z
+    float density;        // 1 / the solid angle of a cell
   };
   std::vector<Band> bands_;
 };

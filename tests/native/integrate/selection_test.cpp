@@ -65,8 +65,9 @@ Measured estimate(const Scene& scene, SamplerType type) {
   for (uint32_t batch = 0; batch < kBatches; ++batch) {
     double mean = 0;
     for (uint32_t k = 0; k < kPoints; ++k) {
-      const Vec3f d = sky.sample(sampler.getChoice(sampler.pixelKey(batch, 0), 5, k));
-      if (d.z > 0) mean += double(luminance(sky.radiance(d)) * d.z / sky.pdf(d));
+      const Vec3f d = sky.sample(sampler.getChoice(sampler.pixelKey(batch, 0), 5, k)).direction;
+      const Environment::Look look = sky.look(d);
+      if (d.z > 0) mean += double(luminance(look.radiance) * d.z / look.pdf);
     }
     mean /= kPoints;
     sum += mean, square += mean * mean;
@@ -278,9 +279,9 @@ TEST(Selection, DensitiesOfAMirrorBallAreThoseOfItsDirections) {
       for (uint32_t batch = 0; batch < kBatches; ++batch) {
         double mean = 0;
         for (uint32_t k = 0; k < kPoints; ++k) {
-          const Vec3f d = sky.sample(sampler.getChoice(sampler.pixelKey(batch, 0), 5, k));
-          mean += 1 / double(sky.pdf(d)) / kPoints;
-          up += (d.y > 0.2f) / double(sky.pdf(d)) / (double(kPoints) * kBatches);
+          const Vec3f d = sky.sample(sampler.getChoice(sampler.pixelKey(batch, 0), 5, k)).direction;
+          mean += 1 / double(sky.look(d).pdf) / kPoints;
+          up += (d.y > 0.2f) / double(sky.look(d).pdf) / (double(kPoints) * kBatches);
         }
         sum += mean, square += mean * mean;
       }

@@ -79,8 +79,8 @@ TEST(SkyProgram, ItsSamplesHaveTheDensityThatItSays) {
   const Sampler sampler(SamplerType::kSobol, 3, kPoints);
   double light = 0, sphere = 0;
   for (uint32_t k = 0; k < kPoints; ++k) {
-    const Vec3f d = sky.sample(sampler.getChoice(sampler.pixelKey(0, 0), 5, k));
-    const float pdf = sky.pdf(d);
+    const Vec3f d = sky.sample(sampler.getChoice(sampler.pixelKey(0, 0), 5, k)).direction;
+    const float pdf = sky.look(d).pdf;
     ASSERT_GT(pdf, 0);
     light += double(luminance(sky.radiance(d)) / pdf) / kPoints;
     sphere += 1 / double(pdf) / kPoints;

@@ -113,5 +113,27 @@ TEST(SinCos, FloatKeepsTinyAngles) {
   EXPECT_EQ(c, 1);
 }
 
+TEST(Atan2, FloatWithin3em7Relative) {
+  double w = 0;
+  for (int k = 0; k <= 1 << 20; ++k) {
+    const double angle = 2 * kPi<double> * k / (1 << 20) - kPi<double>;
+    for (const double r : {1.0, 1e-18, 1e18}) {
+      const float x = static_cast<float>(r * std::cos(angle)), y = static_cast<float>(r * std::sin(angle));
+      const double exact = std::atan2(double(y), double(x));
+      w = std::max(w, std::abs(double(atan2(y, x)) - exact) / std::max(std::abs(exact), 1e-30));
+    }
+  }
+  EXPECT_LT(w, 3e-7);
+}
+TEST(Atan2, FloatOnTheAxes) {
+  EXPECT_EQ(atan2(0.0f, 1.0f), 0);
+  EXPECT_EQ(atan2(1.0f, 0.0f), 0.5f * kPi<float>);
+  EXPECT_EQ(atan2(-1.0f, 0.0f), -0.5f * kPi<float>);
+  EXPECT_EQ(atan2(0.0f, -1.0f), kPi<float>);
+  EXPECT_EQ(atan2(-0.0f, -1.0f), -kPi<float>);
+  EXPECT_EQ(atan2(0.0f, 0.0f), 0);
+  EXPECT_EQ(atan2(1e-38f, 1.0f), 1e-38f);
+}
+
 }  // namespace
 }  // namespace wardmis
