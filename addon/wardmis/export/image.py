@@ -205,10 +205,7 @@ class Picture:
         return self.mime_type == "image/png" or (self.mime_type == "image/x-exr" and straight)
 
     def _stored(self) -> np.ndarray:
-        """(height, width, channels) uint8, or float32 where the image is one or alpha divides: sRGB if `is_encoded`, else linear.
-
-        To be "restored" they are multiplied here.
-        """
+        """(height, width, channels) uint8, or float32 where the image is one: sRGB if `is_encoded`, else linear."""
         image = self.image
         width, height = image.size
         pixels = np.empty(width * height * image.channels, np.float32)

@@ -18,7 +18,7 @@ from .context import ExportContext, ExportError
 from .model import LARGEST, LightData
 from .program.closures import BLACK
 from .program.emission import Light, emission
-from .program.lamp import coordinates
+from .program.lamp import coordinates, sides
 from .program.reader import Reader
 from .socket_value import NotFinite
 from .tree import Owner, output_use
@@ -78,7 +78,7 @@ def _nodes(light: Any, matrix: np.ndarray, context: ExportContext) -> Light:
 
 def _area(light: Any, power: float, data: LightData, context: ExportContext) -> None:
     data.shape = "ellipse" if light.shape in {"DISK", "ELLIPSE"} else "rectangle"
-    data.size = (light.size, light.size_y if light.shape in {"RECTANGLE", "ELLIPSE"} else light.size)
+    data.size = sides(light)
     data.spread = light.spread
     x, y = data.matrix[:3, 0] * data.size[0], data.matrix[:3, 1] * data.size[1]
     shape = math.pi / 4 if data.shape == "ellipse" else 1.0

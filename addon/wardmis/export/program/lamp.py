@@ -33,10 +33,14 @@ def coordinates(light: Any, matrix: np.ndarray) -> Coordinates:
     return lambda p: _disc(p, p.mapped(p("incoming"), [directions]), light.angle / 2)
 
 
+def sides(light: Any) -> tuple[float, float]:
+    """Of an area lamp, in its own space."""
+    return light.size, light.size_y if light.shape in {"RECTANGLE", "ELLIPSE"} else light.size
+
+
 def _over(light: Any) -> Matrix:
     """From an area lamp's own space to its sides."""
-    sizes = light.size, light.size_y if light.shape in {"RECTANGLE", "ELLIPSE"} else light.size
-    x, y = (1.0 / size if size > 0 else 0.0 for size in sizes)
+    x, y = (1.0 / size if size > 0 else 0.0 for size in sides(light))
     return Matrix(((x, 0, 0, 0.5), (0, y, 0, 0.5), (0, 0, 0, 0), (0, 0, 0, 1)))
 
 
