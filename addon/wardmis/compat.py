@@ -295,7 +295,7 @@ BRICK = 3 if VERSION < (3, 5, 0) else 5
 NODE_TREES_ARE_INLINED = VERSION >= (5, 0, 0)
 # A Mix of numbers or vectors whose factor is 0 or 1 is none to Cycles, as one of colours always was.
 MIXED_NUMBERS_FOLD = VERSION >= (4, 0, 0)
-# Cycles takes the word of an image's Alpha Mode whether colours are multiplied by alpha; before, those of floats were, others not.
+# Cycles takes the word of an image's Alpha Mode whether colours are multiplied by alpha; before, that of the file.
 ALPHA_MODES_ARE_TRUSTED = VERSION >= (5, 1, 0)
 
 

@@ -2,6 +2,7 @@
 """Blender's images -> files as they are, or pixels; and what is said about those that cannot be shown."""
 
 import os
+import struct
 import tempfile
 import unittest
 from types import SimpleNamespace
@@ -9,6 +10,7 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 from wardmis.export.context import ExportContext, ExportError
+from wardmis.export.file_alpha import file_alpha
 from wardmis.export.glb import write_glb
 from wardmis.export.image import Picture, WithinMemory, export_image, frame_of, path_of_frame, picture_of
 from wardmis.export.model import CameraData, FileOnDisk, FilmData, SceneData
@@ -217,6 +219,55 @@ class Images(unittest.TestCase):
         export(Picture(images[1]))
         self.assertEqual([image.has_data for image in images], [True, True, True, True])
         self.assertAlmostEqual(images[2].pixels[0], 0.5, places=2)
+
+    def test_pixels_of_a_multiplied_file_come_back(self):
+        """Which Blender has divided, and cut off where they are not multiplied."""
+        for colors, note in ((0.3, False), (0.9, True)):
+            image = bpy.data.images.new("I", 16, 16, alpha=True)
+            values = np.zeros((256, 4), np.float32)
+            values[:, 3] = np.arange(256) / 255
+            values[:, :3] = np.floor(colors * (np.arange(256) if not note else np.full(256, 255)))[:, None] / 255
+            image.pixels.foreach_set(values.ravel())
+            image.filepath_raw, image.file_format = f"{self.path}-{note}.tga", "TARGA"
+            image.save()
+            bpy.data.images.remove(image)
+            image = bpy.data.images.load(f"{self.path}-{note}.tga")
+            self.addCleanup(bpy.data.images.remove, image)
+            image.alpha_mode = "PREMUL"
+            found = export_image(Picture(image)).pixels.reshape(256, 4)
+            stored = np.rint(255 * values).astype(np.uint8)
+            self.assertEqual(np.array_equal(found, stored), not note)
+            self.assertEqual("Premultiplied" in str(Picture(image).deviations()), note)
+
+    def test_alpha_of_files(self):
+        def tiff(order, big, extra, samples):
+            pack = lambda kinds, *values: struct.pack(order + kinds, *values)  # noqa: E731
+            offset, entry = ("Q", "HHQHHI") if big else ("I", "HHIHH")
+            start = pack("HHHQ", 43, 8, 0, 16) if big else pack("HI", 42, 8)
+            entries = [(277, 3, 1, samples, 0), *([(338, 3, 1, extra, 0)] if extra is not None else [])]
+            body = b"".join(pack(entry, *each, *([0] if big else [])) for each in entries)
+            count = pack("Q" if big else "H", len(entries))
+            return (b"II" if order == "<" else b"MM") + start + count + body + pack(offset, 0)
+
+        footer = struct.pack("<II", 100, 0) + b"TRUEVISION-XFILE.\0"
+        for content, expected in (
+            *(
+                (tiff(order, big, extra, samples), (extra == 2, samples == 2))
+                for order in "<>"
+                for big in (False, True)
+                for extra in (None, 0, 1, 2)
+                for samples in (2, 4)
+            ),
+            (bytes(1000) + footer, (True, False)),
+            (bytes(100) + bytes(494) + bytes([4]) + footer, (False, False)),
+            (b"\x76\x2f\x31\x01", (False, False)),
+            (b"II", (True, False)),  # cut off
+            (b"", (True, False)),
+        ):
+            with open(self.path, "wb") as file:
+                file.write(content)
+            found = file_alpha(self.path)
+            self.assertEqual((found.is_straight, found.is_of_grey), expected, content[:64])
 
     def test_alpha_as_cycles_takes_it(self):
         image, _ = self.file("PNG")

@@ -5,13 +5,15 @@ from __future__ import annotations
 
 import os
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import bpy
 import numpy as np
 
 from .. import compat
+from .blender_pixels import alpha_affects_colors, as_in_the_file, blender_pixels, is_cut_off
+from .file_alpha import file_alpha
 from .model import FileOnDisk, ImageData, Rgb
 
 # what stands in for an image that cannot be shown: never black, easy to see, and Blender's own sign for it
@@ -25,8 +27,6 @@ SIGNATURES = (
 )
 EXR_BEGINS = SIGNATURES[2][0]
 COLOR_SPACES = {"sRGB": "sRGB", "Linear": "linear", "Linear Rec.709": "linear", "Non-Color": "linear", "Raw": "linear"}
-DATA = {"Non-Color", "Raw"}  # no colours: alpha means nothing to them
-PNG_TYPE, GREY_WITH_ALPHA = 25, 4  # where a PNG says what its pixels are, and one such kind
 
 
 @dataclass(frozen=True)
@@ -66,8 +66,10 @@ class Picture:
 
     @property
     def is_encoded(self) -> bool:
-        """Whether it is kept and filtered as sRGB. Blender has made the pixels linear of a float image that is not read from a file."""
-        return self._space == "sRGB" and (not self.image.is_float or self.mime_type != "")
+        """Whether it is kept and filtered as sRGB. Blender has made floats linear, which Cycles does not see where it reads the file."""
+        if self.image.is_float:
+            return self.image.colorspace_settings.name == "sRGB" and self._is_read_by_cycles
+        return self._space == "sRGB"
 
     @property
     def _space(self) -> str:
@@ -107,14 +109,26 @@ class Picture:
         if not self.image.packed_files:
             return False
         if self.image.is_float and self._file(4) == EXR_BEGINS:
-            return bool(self.image.alpha_mode == "STRAIGHT")
+            return bool(self.image.alpha_mode == "STRAIGHT" or self._space != "linear")
         return bool(self.image.is_float or self.image.alpha_mode == "PREMUL")
 
     @property
-    def is_grey_with_alpha(self) -> bool:
-        """Of a PNG file; Cycles multiplies colours alone by alpha. Packed, the image is one of colours."""
-        is_file = self.mime_type == "image/png" and not self.image.packed_files
-        return is_file and self._file(PNG_TYPE + 1)[PNG_TYPE:] == bytes([GREY_WITH_ALPHA])
+    def _is_read_by_cycles(self) -> bool:
+        """Whether Cycles reads its file, and not the pixels that Blender holds."""
+        image = self.image
+        return not image.is_dirty and not image.packed_files and image.source in {"FILE", "TILED", "SEQUENCE"}
+
+    @property
+    def is_to_be_multiplied(self) -> bool:
+        """Whether Cycles multiplies the colours of what it reads, the file or Blender's pixels, by alpha."""
+        if not alpha_affects_colors(self.image):
+            return False
+        of_file = file_alpha(self.path) if self._is_read_by_cycles else None
+        if of_file is not None and of_file.is_of_grey:
+            return False
+        if compat.ALPHA_MODES_ARE_TRUSTED:
+            return bool(self.image.alpha_mode == "STRAIGHT")
+        return of_file.is_straight if of_file is not None else not self.image.is_float
 
     def export(self) -> ImageData:
         """A missing one becomes a magenta texel."""
@@ -173,6 +187,10 @@ class Picture:
         space = image.colorspace_settings.name
         if space not in COLOR_SPACES and not image.is_float:
             found.append(f"colour space '{space}' is not supported; its colours are read as sRGB")
+        if not self.mime_type and self._is_read_by_cycles and is_cut_off(image):
+            found.append(
+                "it is said to be Premultiplied, and its colours are not multiplied by alpha; Blender cuts the bright ones off"
+            )
         if image.source == "MOVIE":
             found.append("movies are not supported; the picture that Blender holds now is used")
         if image.source == "SEQUENCE" and not self.mime_type:
@@ -198,27 +216,12 @@ class Picture:
             return self._file()
         return FileOnDisk(self.path, os.path.getsize(self.path))
 
-    @property
-    def _is_multiplied_on_loading(self) -> bool:
-        """Whether Blender holds the colours of a float image multiplied by alpha, which its file does not."""
-        straight = self.image.alpha_mode == "STRAIGHT"
-        return self.mime_type == "image/png" or (self.mime_type == "image/x-exr" and straight)
-
     def _stored(self) -> np.ndarray:
         """(height, width, channels) uint8, or float32 where the image is one: sRGB if `is_encoded`, else linear."""
-        image = self.image
-        width, height = image.size
-        pixels = np.empty(width * height * image.channels, np.float32)
-        image.pixels.foreach_get(pixels)
-        pixels = pixels.reshape(height, width, image.channels)
-        if not image.is_float:
-            np.multiply(pixels, np.float32(255), out=pixels)
-            pixels = np.rint(pixels, out=pixels).astype(np.uint8)
-        elif image.channels == 4 and self._is_multiplied_on_loading:
-            pixels = np.concatenate([_over_alpha(pixels), pixels[..., 3:]], axis=-1)
-        if image.is_float and self.is_encoded:
-            pixels = np.concatenate([encode_srgb(pixels[..., :3]), pixels[..., 3:]], axis=-1)
-        if image.channels < 4 or self.alpha == "kept":
+        pixels = blender_pixels(self.image)
+        if self._is_read_by_cycles:
+            pixels = as_in_the_file(self.image, pixels, self.is_encoded)
+        if pixels.shape[-1] < 4 or self.alpha == "kept":
             return pixels
         if self.alpha == "ignored":
             return pixels[..., :3]
@@ -234,17 +237,9 @@ def picture_of(image: Any, shows_alpha: bool, user: Any, scene_frame: int) -> Pi
 
     Cycles multiplies colours by alpha where the file has not done so, and divides them again where the alpha is used.
     """
-    alpha, divided = "ignored" if image.alpha_mode == "NONE" else "kept", False
-    space = image.colorspace_settings.name
-    if image.alpha_mode in {"STRAIGHT", "PREMUL"} and space not in DATA:
-        integers = not image.is_float or Picture(image).mime_type == "image/png"
-        premultiplied = image.alpha_mode == "PREMUL"
-        if integers:
-            is_done = Picture(image).is_grey_with_alpha or (premultiplied and compat.ALPHA_MODES_ARE_TRUSTED)
-        else:
-            is_done = premultiplied or not compat.ALPHA_MODES_ARE_TRUSTED
-        alpha, divided = "kept" if is_done else "multiplied", shows_alpha
-    return Picture(image, alpha, divided, frame_of(user, scene_frame) if image.source == "SEQUENCE" else None)
+    plain = Picture(image, frame=frame_of(user, scene_frame) if image.source == "SEQUENCE" else None)
+    alpha = "ignored" if image.alpha_mode == "NONE" else "multiplied" if plain.is_to_be_multiplied else "kept"
+    return replace(plain, alpha=alpha, divided=alpha_affects_colors(image) and shows_alpha)
 
 
 def frame_of(user: Any, scene_frame: int) -> int:
@@ -305,14 +300,3 @@ class WithinMemory:
             oldest, _ = self._read.pop(next(iter(self._read)))
             if not oldest.is_dirty:
                 oldest.buffers_free()
-
-
-def encode_srgb(v: np.ndarray) -> np.ndarray:
-    curve = 1.055 * np.maximum(v, 0.0) ** (1 / 2.4) - 0.055
-    return np.where(v <= 0.0031308, v * 12.92, curve).astype(np.float32)
-
-
-def _over_alpha(pixels: np.ndarray) -> np.ndarray:
-    """(height, width, 3): the colours of float RGBA, divided by its alpha where that is not 0."""
-    alpha = pixels[..., 3:]
-    return np.divide(pixels[..., :3], alpha, out=pixels[..., :3].copy(), where=alpha != 0)

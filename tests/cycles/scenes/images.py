@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Image textures: what is stored, how it is looked up, and what alpha does. Seen from above under a white sky: the image is the picture."""
 
+import struct
+from pathlib import Path
+
 import bpy
 import numpy as np
 from stage import add, checker, diffuse, face_on, feed, gradient, image, material, painted, saved_image, scene, sheet
@@ -207,6 +210,100 @@ def alpha_exr_used():
 
         made = sheet(painted(build), size=0.95)
         made.location.x = x
+
+
+def tiff(name, rgba, bits, extra):
+    """A file of the values as they are, whose alpha is 0: not said to be one, 1: said to have multiplied the colours, 2: not to have."""
+    height, width, _ = rgba.shape
+    values = np.rint(rgba[::-1] * (2**bits - 1)).astype(f"<u{bits // 8}").tobytes()
+    after, entries = 8 + 2 + 12 * 10 + 4, []
+    for tag, kind, number, value in (
+        (256, 3, 1, width),
+        (257, 3, 1, height),
+        (258, 3, 4, after),  # bits of each channel
+        (259, 3, 1, 1),  # not compressed
+        (262, 3, 1, 2),  # RGB
+        (273, 4, 1, after + 8),
+        (277, 3, 1, 4),
+        (278, 3, 1, height),
+        (279, 4, 1, len(values)),
+        (338, 3, 1, extra),
+    ):
+        entries.append(struct.pack("<HHII", tag, kind, number, value))
+    path = Path(bpy.app.tempdir) / f"{name}.tif"
+    directory = struct.pack("<2sHIH", b"II", 42, 8, len(entries)) + b"".join(entries) + struct.pack("<I", 0)
+    path.write_bytes(directory + struct.pack("<4H", *[bits] * 4) + values)
+    return bpy.data.images.load(str(path))
+
+
+def in_all_modes(make):
+    """Sheets of `make(mode)`, whose colours are multiplied by alpha: below with alpha used as well."""
+    face_on()
+    for x, mode in ((-1.3, "STRAIGHT"), (0, "PREMUL"), (1.3, "CHANNEL_PACKED")):
+        picture = make(mode)
+        picture.alpha_mode = mode
+        for y in (0.7, -0.7):
+
+            def build(tree, y=y, picture=picture):
+                node = texture(tree, picture, {"interpolation": "Closest"})
+                color, alpha = node.outputs["Color"], node.outputs["Alpha"]
+                return color if y > 0 else mixed(tree, alpha, (0.2, 0.2, 0.2, 1), color)
+
+            made = sheet(painted(build), size=0.6)
+            made.location = x, y, 0
+
+
+def multiplied():
+    pixels = with_alpha()
+    pixels[..., :3] *= pixels[..., 3:]
+    return pixels
+
+
+@scene
+def alpha_tiff():
+    in_all_modes(lambda mode: tiff(mode, multiplied(), 8, 2))
+
+
+@scene
+def alpha_tiff_of_multiplied():
+    in_all_modes(lambda mode: tiff(mode, multiplied(), 8, 1))
+
+
+@scene
+def alpha_tiff_16_bits():
+    in_all_modes(lambda mode: tiff(mode, multiplied(), 16, 2))
+
+
+@scene
+def alpha_tiff_16_bits_of_multiplied():
+    in_all_modes(lambda mode: tiff(mode, multiplied(), 16, 1))
+
+
+@scene
+def alpha_tga():
+    in_all_modes(lambda mode: saved_image(mode, multiplied(), "tga"))
+
+
+@scene
+def alpha_tga_packed():
+    def make(mode):
+        picture = saved_image(mode, multiplied(), "tga")
+        picture.alpha_mode = mode
+        picture.pack()
+        return picture
+
+    in_all_modes(make)
+
+
+@scene
+def alpha_exr_packed_in_all_modes():
+    def make(mode):
+        picture = saved_image(mode, multiplied(), "exr")
+        picture.alpha_mode = mode
+        picture.pack()
+        return picture
+
+    in_all_modes(make)
 
 
 @scene
