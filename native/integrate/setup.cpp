@@ -42,14 +42,15 @@ bool negativeLight(const Scene& scene) {
     const auto& floats = scene.images[static_cast<size_t>(scene.textures[static_cast<size_t>(texture)].image)].floats;
     return std::any_of(floats.begin(), floats.end(), [](float x) { return x < 0; });
   };
+  // what a program makes may be anything
   for (const Light& l : scene.lights)
-    if (negative(l.emitted)) return true;
+    if (negative(l.emitted) || l.program) return true;
   for (const Material& m : scene.materials)
-    if (negative(m.emission.value) || m.emission.result >= 0 ||  // what a program makes may be anything
+    if (negative(m.emission.value) || m.emission.result >= 0 ||
         (!isBlack(m.emission.value) && texels(m.emission.texture.texture)))
       return true;
   for (const World& w : scene.worlds)
-    if (negative(w.radiance) || (!isBlack(w.radiance) && texels(w.texture))) return true;
+    if (negative(w.radiance) || w.program || (!isBlack(w.radiance) && texels(w.texture))) return true;
   return false;
 }
 

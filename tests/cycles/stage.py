@@ -138,6 +138,18 @@ def saved_image(name: str, pixels: Any, suffix: str = "png", depth: str = "8") -
     return bpy.data.images.load(str(path))
 
 
+def weighted(tree: Any, outputs: Iterable[tuple[str, str, float]]) -> Any:
+    """The sum of (node, output, weight): a colour to which many outputs contribute."""
+    total = None
+    for node, name, weight in outputs:
+        part = add(tree, "VectorMath", {"operation": "MULTIPLY_ADD"}, Vector=add(tree, node).outputs[name])
+        part.inputs[1].default_value, part.inputs[2].default_value = (weight,) * 3, (0.3,) * 3
+        if total is not None:
+            tree.links.new(total, part.inputs[2])
+        total = part.outputs[0]
+    return total
+
+
 # ---- things ---------------------------------------------------------------------------------------------------------
 
 

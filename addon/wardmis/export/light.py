@@ -18,7 +18,7 @@ from .context import ExportContext, ExportError
 from .model import LARGEST, LightData
 from .program.closures import BLACK
 from .program.emission import Light, emission
-from .program.lamp import coordinates, sides
+from .program.lamp import LampObject, lamp_of, sides
 from .program.reader import Reader
 from .socket_value import NotFinite
 from .tree import Owner, output_use
@@ -28,12 +28,17 @@ WIDE = 1e-4  # a spread that is nearer to 180 degrees is none
 
 
 def export_light(
-    light: Any, name: str, matrix: np.ndarray, hidden_from: frozenset[str], context: ExportContext
+    light: Any,
+    name: str,
+    matrix: np.ndarray,
+    hidden_from: frozenset[str],
+    context: ExportContext,
+    found: LampObject | None = None,
 ) -> LightData | None:
-    """None for a light that gives no light, and for Cycles' light portals, which are hints only."""
+    """None for a light that gives no light, and for Cycles' light portals, which are hints only. `found`: what its nodes may ask for."""
     if light.type == "AREA" and getattr(getattr(light, "cycles", None), "is_portal", False):
         return None
-    nodes = _nodes(light, matrix, context) if compat.uses_nodes(light) else None
+    nodes = _nodes(light, matrix, context, found or LampObject()) if compat.uses_nodes(light) else None
     node_factor = nodes.factor if nodes else (1.0, 1.0, 1.0)
     power = light.energy * compat.light_exposure(light)
     temperature = compat.light_temperature_color(light)
@@ -58,12 +63,12 @@ def export_light(
     return data
 
 
-def _nodes(light: Any, matrix: np.ndarray, context: ExportContext) -> Light:
+def _nodes(light: Any, matrix: np.ndarray, context: ExportContext, found: LampObject) -> Light:
     """What the light's nodes multiply the light by."""
     owner = Owner("light", f"light '{light.name}'", context)
     output = output_use(light.node_tree, "Surface", owner)
     p = Reader("light")
-    p.on_lamp = coordinates(light, matrix)
+    p.lamp = lamp_of(light, matrix, found)
     try:
         if output is None or output.source("Surface").is_nothing:
             context.note(f"{owner.place}: no node is connected to its output; it gives no light")

@@ -21,6 +21,7 @@ from .material import export_material
 from .mesh import Geometry, Wanted, assemble, gather_geometry, transformed, wanted_of
 from .model import VISIBILITY, ClosureData, ColorInput, InstanceData, MaterialData, ScalarInput, SceneData
 from .motion import Motion, Opening, SetFrame, at_its_own_frame_again, go_to, opening_of, shutter_of
+from .program.lamp import LampObject
 from .strands import curve_settings, gather_curves, gather_hair, gather_points, particle_hair
 from .world import export_worlds
 
@@ -128,6 +129,15 @@ def _flat(axes: np.ndarray) -> np.ndarray:
     return flat
 
 
+def _random_of(obj: Any, instance: Any) -> float:
+    return random_of(instance.random_id if instance.is_instance else None, obj.name)
+
+
+def _lamp_object(obj: Any, instance: Any) -> LampObject:
+    r, g, b, alpha = obj.color
+    return LampObject((r, g, b), alpha, float(obj.pass_index), _random_of(obj, instance))
+
+
 def _is_gas_domain(obj: Any) -> bool:
     """Whether a fluid simulation's smoke is what there is to see of the object, not its mesh."""
     domains = (
@@ -177,8 +187,8 @@ class _Gatherer:
             elif kind == "POINTCLOUD":
                 self._place(obj, instance, "points", obj.data, self._points_geometry)
             elif kind == "LIGHT":
-                matrix = self._matrix(instance)
-                light = export_light(obj.data, obj.name, matrix, self._hidden_from(obj, instance), self.context)
+                matrix, hidden = self._matrix(instance), self._hidden_from(obj, instance)
+                light = export_light(obj.data, obj.name, matrix, hidden, self.context, _lamp_object(obj, instance))
                 if light is not None:
                     self.lights.append(light)
             elif kind not in SEEN_AS_MESHES | DRAWN_BY_BLENDER:
@@ -275,7 +285,7 @@ class _Gatherer:
                 r, g, b, a = obj.color
                 data.color = (r, g, b, a)
             if program.reads("object-random"):
-                data.random = random_of(instance.random_id if instance.is_instance else None, obj.name)
+                data.random = _random_of(obj, instance)
             if any(name.startswith(OF_OBJECT) for name in program.attributes):
                 instancer = instance.parent if instance.is_instance and instance.parent is not None else obj
                 scene = (self.view_layer, self.scene, self.scene.world)

@@ -24,6 +24,7 @@ from stage import (
     scene,
     sky,
     sphere_mesh,
+    weighted,
 )
 
 
@@ -310,6 +311,32 @@ def images_on_lamps():
         tree = tree_of(lamp(kind, position, power, **settings))
         texture = add(tree, "TexImage", {"image": picture})
         tree.links.new(texture.outputs["Color"], tree.nodes["Emission"].inputs["Color"])
+
+
+@scene
+def of_no_surface():
+    """What nodes of lamps tell of surfaces and objects."""
+    things()
+    outputs = [
+        ("NewGeometry", "Pointiness", 0.3),
+        ("NewGeometry", "Random Per Island", 0.3),
+        ("Attribute", "Alpha", 0.2),
+        ("PointInfo", "Position", 0.1),
+        ("TexCoord", "Reflection", 0.3),
+        ("TexCoord", "Camera", 0.03),
+        *(("ObjectInfo", name, 0.1) for name in ("Location", "Color", "Alpha", "Object Index", "Random")),
+    ]
+    if bpy.app.version >= (4, 0):
+        outputs.append(("Tangent", "Tangent", 0.3))
+    for kind, position, power, settings in (
+        ("POINT", (-2, -2, 4), 30, {"shadow_soft_size": 0.3}),
+        ("AREA", (2, -3, 3), 100, {"size": 1.5}),
+        ("SUN", (1, 2, 4), 0.5, {"angle": 0.2}),
+    ):
+        made = lamp(kind, position, power, turned=0.7, **settings)
+        made.color, made.pass_index = (0.3, 0.5, 0.7, 0.4), 2
+        tree = tree_of(made)
+        tree.links.new(weighted(tree, outputs), tree.nodes["Emission"].inputs["Color"])
 
 
 @scene

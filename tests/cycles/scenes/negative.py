@@ -50,3 +50,31 @@ def world():
     things()
     sky((0.5, 0.3, 0.1), -1)
     lamp("AREA", (1, -1, 4), 300, size=2)
+
+
+def toned(tree, shader, node, name):
+    """Its colour: what an output of a node tells, below zero too."""
+    part = add(tree, "VectorMath", {"operation": "MULTIPLY_ADD"}, Vector=add(tree, node).outputs[name])
+    part.inputs[1].default_value, part.inputs[2].default_value = (0.6, 0.6, 0.6), (0.2, 0.2, 0.2)
+    tree.links.new(part.outputs[0], shader.inputs["Color"])
+
+
+@scene
+def computed_world():
+    things()
+    tree = sky((1, 1, 1))
+    toned(tree, tree.nodes["Background"], "TexCoord", "Generated")
+    camera(target=(0, 0, 2))
+
+
+@scene
+def computed_lamps():
+    things()
+    for kind, position, power, settings in (
+        ("POINT", (-2, -2, 4), 60, {}),
+        ("AREA", (1, -1, 4), 60, {"size": 2}),
+        ("SUN", (1, 2, 4), 0.3, {"angle": 0.2}),
+    ):
+        made = lamp(kind, position, power, **settings)
+        made.data.use_nodes = True
+        toned(made.data.node_tree, made.data.node_tree.nodes["Emission"], "TexCoord", "Normal")

@@ -5,7 +5,7 @@ import math
 
 import bpy
 import numpy as np
-from stage import add, ball, box, camera, floor, image, material, saved_image, scene, sky, sun
+from stage import add, ball, box, camera, floor, image, material, saved_image, scene, sky, sun, weighted
 
 
 def things():
@@ -419,6 +419,38 @@ def other_coordinates():
         return add(tree, "VectorMath", {"operation": "ABSOLUTE"}, Vector=total).outputs[0]
 
     computed(color)
+
+
+@scene
+def without_a_surface():
+    """What nodes tell of surfaces and objects."""
+
+    def color(tree, _coordinates):
+        outputs = [
+            ("NewGeometry", "Parametric", 0.1),
+            ("NewGeometry", "Pointiness", 0.2),
+            ("NewGeometry", "Random Per Island", 0.2),
+            ("Attribute", "Alpha", 0.1),
+            ("ObjectInfo", "Random", 0.1),
+            ("LightFalloff", "Quadratic", 0.001),
+        ]
+        if bpy.app.version >= (4, 0):
+            outputs.append(("Tangent", "Tangent", 0.1))
+        if bpy.app.version >= (5, 0):
+            outputs.append(("NewGeometry", "Tangent", 0.1))
+        else:
+            outputs += [("LightFalloff", "Linear", 0.1), ("LightFalloff", "Constant", 0.1)]
+        return weighted(tree, outputs)
+
+    computed(color)
+
+
+@scene
+def ray_depth_of_the_camera():
+    """All that is seen of the world."""
+    tree = sky((1, 1, 1))
+    camera()
+    tree.links.new(weighted(tree, [("LightPath", "Ray Depth", 0.3)]), tree.nodes["Background"].inputs["Color"])
 
 
 @scene

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where on a lamp its nodes are: what they know as Geometry's Parametric and, since Cycles 4, as its UVs."""
+"""What a lamp's nodes know of it, and where on it they are: Geometry's Parametric and, since Cycles 4, its UVs."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,29 @@ from .builder import Value
 Coordinates = Callable[[Any], Value]  # of a Reader
 
 
+@dataclass(frozen=True)
+class LampObject:
+    """What Object Info tells of it."""
+
+    color: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    alpha: float = 1.0
+    index: float = 0.0
+    random: float = 0.0
+
+
+@dataclass(frozen=True)
+class Lamp:
+    type: str
+    coordinates: Coordinates
+    normals: Matrix  # takes normals in its space to the world
+    object: LampObject
+
+
+def lamp_of(light: Any, matrix: np.ndarray, found: LampObject) -> Lamp:
+    inverse = Matrix(matrix.tolist()).inverted_safe()
+    return Lamp(light.type, coordinates(light, matrix), inverse.to_3x3().transposed().to_4x4(), found)
+
+
 def coordinates(light: Any, matrix: np.ndarray) -> Coordinates:
     """`matrix`: of the lamp's object. (u, v, 0), from 0 to 1 over an area lamp, the cone of a spot, the disc of a sun, and all directions."""
     kind = light.type
@@ -24,7 +48,6 @@ def coordinates(light: Any, matrix: np.ndarray) -> Coordinates:
     if kind == "AREA":
         return lambda p: p.mapped(p("position"), [_over(light) @ inverse])
     if compat.CYCLES < 4:
-        # of a sun they are random numbers
         return _of_old_sphere if kind in {"POINT", "SPOT"} else lambda _: (0.0, 0.0, 0.0)
     if kind == "POINT":
         return lambda p: p("combine", *_sphere(p, p.mapped(p("normal"), [directions])), 0.0)

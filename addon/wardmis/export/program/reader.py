@@ -13,6 +13,7 @@ from ... import compat
 from ..socket_value import own_value
 from ..tree import NodeUse, Source
 from .builder import Builder, Result, Value, constant, is_constant, kind_of
+from .lamp import Lamp
 
 NUMBERS = {"VALUE", "INT", "BOOLEAN"}
 
@@ -54,7 +55,7 @@ class Reader(Builder):
         super().__init__()
         self.kind = kind
         self.is_light = kind != "material"  # what is read colours light: a lost image is grey then, not magenta
-        self.on_lamp: Callable[[Reader], Value] | None = None  # of a lamp: lamp.py's
+        self.lamp: Lamp | None = None
         self.discs = True  # whether skies show the discs of their suns
         # of the suns shown: direction in the world, None if that is not fixed, and angle
         self.suns: list[tuple[Any, float]] = []
@@ -64,10 +65,8 @@ class Reader(Builder):
     def place(self, name: str, /, **parameters: Any) -> Value:
         """An operation that tells where the program runs; what is elsewhere than on a surface, as Cycles has it there."""
         # of all sets of UVs a lamp has the one without a name
-        if self.on_lamp is not None and (
-            name == "parametric" or (name == "uv" and compat.CYCLES >= 4 and not parameters)
-        ):
-            return self.on_lamp(self)
+        if self.lamp is not None and (name == "parametric" or (name == "uv" and compat.CYCLES >= 4 and not parameters)):
+            return self.lamp.coordinates(self)
         elsewhere = ELSEWHERE.get(self.kind, {}).get(name, name)
         if not isinstance(elsewhere, str):
             return elsewhere
@@ -179,11 +178,14 @@ class Reader(Builder):
         return value
 
     def _of_node(self, use: NodeUse, output: Any) -> Value | None:
-        from .neutral import NEUTRAL  # late: nodes are read by this class
+        from .elsewhere import elsewhere  # late: nodes are read by this class
+        from .neutral import NEUTRAL
         from .nodes import NODES
 
         kind = use.node.bl_idname
-        value = NODES[kind](use, output, self) if kind in NODES else None
+        value = elsewhere(use, output, self)
+        if value is None and kind in NODES:
+            value = NODES[kind](use, output, self)
         if value is not None:
             return value
         if kind not in NEUTRAL:
