@@ -142,6 +142,8 @@ class Renderer:
                 self._error = event
             else:
                 self._events.put(event)
+        self._process.wait()
+        self._events.put({"event": "ended"})  # who waits for an event need not wait any longer
 
     def _read_messages(self) -> None:
         assert self._process.stderr is not None

@@ -22,7 +22,7 @@ import scenes  # noqa: E402, F401
 from stage import SCENES, Scene  # noqa: E402
 from wardmis import compat  # noqa: E402
 
-SEEDS = 6
+SEEDS = 5
 # where Cycles' sequences go on as well distributed as they begin: it puts the very first sample into the middle of the pixel
 LATER_SAMPLES = 8192
 

@@ -81,8 +81,8 @@ def compared(folder: Path, name: str) -> Row:
         row.worst, row.noise, row.median = first.worst, first.noise, first.median
         both = first.beyond
         if both.any() and not (abs(first.z) > CERTAIN).any():
-            again = folder / "again"
-            again.mkdir(exist_ok=True)
+            again = folder / "again" / name  # several scenes are compared at a time
+            again.mkdir(parents=True)
             render(again, AGAIN, f"={name}")
             second = blocks.deviation(again, name, row.within)
             both = first.beyond & second.beyond & (first.z * second.z > 0)
@@ -122,26 +122,28 @@ def main(pattern: str) -> int:
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     parts = int(os.environ.get("WARDMIS_JOBS") or os.cpu_count() or 1)
-    with ThreadPoolExecutor(parts) as pool:
+    nodes_too = pattern in "parity"  # also where all is wanted
+    with ThreadPoolExecutor(parts + 1) as pool:
+        nodes = pool.submit(parity, folder) if nodes_too else None
         list(pool.map(lambda part: render(folder, 0, pattern, part, parts), range(parts)))
     lists = [json.loads((folder / f"part-{part}.json").read_text()) for part in range(parts)]
     names = [names[i] for i in range(max(map(len, lists))) for names in lists if i < len(names)]
     rows = []
-    for name in names:
-        rows.append(row := compared(folder, name))
-        worst = "" if row.worst is None else f"{100 * row.worst:7.2f} % ± {100 * (row.noise or 0):.2f} %"
-        print(f"{'FAIL' if row.fault else 'ok  '} {name:36} {worst} {row.fault or row.why}", flush=True)
+    with ThreadPoolExecutor(parts) as pool:
+        for row in pool.map(lambda name: compared(folder, name), names):
+            rows.append(row)
+            worst = "" if row.worst is None else f"{100 * row.worst:7.2f} % ± {100 * (row.noise or 0):.2f} %"
+            print(f"{'FAIL' if row.fault else 'ok  '} {row.name:36} {worst} {row.fault or row.why}", flush=True)
     folder.with_suffix(folder.suffix + ".md").write_text(table(rows))
     folder.with_suffix(folder.suffix + ".json").write_text(json.dumps([vars(row) for row in rows], indent=1))
     failed = sum(bool(row.fault) for row in rows)
     passed = len(rows) - failed
-    if pattern in "parity":  # also where all is wanted
-        nodes = parity(folder)
-        for node in nodes:
+    if nodes:
+        for node in nodes.result():
             if node.deviates:
                 print(f"FAIL parity: {node.case}: {node.worst:.1e}, and {node.within:.0e} is allowed", flush=True)
-        failed += (deviating := sum(node.deviates for node in nodes))
-        passed += len(nodes) - deviating
+        failed += (deviating := sum(node.deviates for node in nodes.result()))
+        passed += len(nodes.result()) - deviating
     print(f"{passed} passed, {failed} failed")
     return 1 if failed or not passed else 0
 
