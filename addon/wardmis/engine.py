@@ -231,7 +231,7 @@ class _Render:
         try:
             events = renderer.finish()
         except RendererError as error:
-            if renderer.was_replaced():  # by an add-on that is installed anew, which is to stop the render
+            if self._stopped():
                 raise _Stopped from error
             raise
         for event in events:

@@ -63,13 +63,14 @@ def _make_executable(path: Path) -> None:
             ) from error
 
 
-def _identity(path: str) -> Any:
-    """What a file that is written anew does not share with the one before; None: there is none."""
-    try:
-        status = os.stat(path)
-    except OSError:
-        return None
-    return status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns
+def _identities(program: str) -> dict[Path, tuple[int, ...]]:
+    """Of its files, the packaged libraries beside it included: what one that is written anew does not share with the one before."""
+    found: dict[Path, tuple[int, ...]] = {}
+    for path in (Path(program), *(Path(program).parent / "lib").glob("*")):
+        with contextlib.suppress(OSError):
+            status = path.stat()
+            found[path] = (status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns)
+    return found
 
 
 def version(path: Path) -> str:
@@ -100,7 +101,7 @@ class Renderer:
         """`name` is what messages call it; `environment` its variables, by default Blender's own."""
         self.path = command[0]
         self._name = name
-        self._file = _identity(self.path)
+        self._files = _identities(self.path)
         self._events: queue.SimpleQueue[dict[str, Any]] = queue.SimpleQueue()
         self._tail: deque[str] = deque(maxlen=6)  # of what it said besides events
         self._error: dict[str, Any] | None = None
@@ -162,8 +163,8 @@ class Renderer:
         return self._process.poll()
 
     def was_replaced(self) -> bool:
-        """Whether its file is another one than at its start: Blender installs over it, and the process may then crash."""
-        return _identity(self.path) != self._file
+        """Whether a file of it is another one than at its start: Blender installs over it, and the process then crashes."""
+        return _identities(self.path) != self._files
 
     def interrupt(self) -> None:
         """Asks it to end with what it has done so far, as Ctrl-C does; returns at once."""
@@ -197,6 +198,11 @@ class Renderer:
     def _failure(self, code: int) -> str:
         if self._error is not None:
             return f"{self._name} failed (exit code {code}): {self._error.get('message', 'no message')}"
+        if code < 0 and self.was_replaced():
+            return (
+                f"{self._name} was replaced while it ran, as by an add-on that is installed again, and could not go on; "
+                "render or compare again"
+            )
         if code < 0:
             with contextlib.suppress(ValueError):
                 return f"{self._name} crashed ({signal.Signals(-code).name}){self.said()}"

@@ -9,9 +9,10 @@ import shutil
 import subprocess
 import tempfile
 import unittest
+from pathlib import Path
 
 from support import RenderTest
-from wardmis.process import Renderer
+from wardmis.process import Renderer, RendererError
 
 REMOVE = "bpy.ops.preferences.addon_disable(module='wardmis')"
 
@@ -98,6 +99,20 @@ class Replaced(unittest.TestCase):
                 os.unlink(path)
                 shutil.copy(shutil.which("true"), path)
                 self.assertTrue(renderer.was_replaced())
+
+    def test_a_library_of_it(self):
+        """Which is written before the renderer itself: the process crashes while that is still its own."""
+        for replaced in (False, True):
+            with self.subTest(replaced=replaced), tempfile.TemporaryDirectory() as folder:
+                path, library = shutil.copy(shutil.which("bash"), folder), Path(folder) / "lib" / "libany.so"
+                library.parent.mkdir()
+                library.write_text("before")
+                with Renderer([path, "-c", "read; kill -SEGV $$"]) as renderer:
+                    if replaced:
+                        library.write_text("after")
+                    renderer._process.stdin.close()
+                    with self.assertRaisesRegex(RendererError, "was replaced while it ran" if replaced else "SIGSEGV"):
+                        renderer.finish()
 
 
 @contextlib.contextmanager
