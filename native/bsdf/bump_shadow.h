@@ -15,21 +15,27 @@ constexpr bool hasSoftTerminator(LobeKind kind) {
   return kind <= LobeKind::kRoughTranslucent || kind == LobeKind::kSchlickSheen || kind == LobeKind::kFibres;
 }
 
-// Cosines: of the surface's own normal and the light, of both normals, of the lobe's normal and the light.
-inline float bumpShadow(int version, bool soft, float ownLight, float ownLobe, float lobeLight) {
+struct BumpShadow {
+  float bySurface, byLight;  // what is left of light that a sample of the lobe finds, or one of a light
+};
+
+// Cosines: of the surface's own normal and the light, of both normals, of the lobe's normal and the light. What goes
+// through the surface is darkened for light samples alone, as there.
+inline BumpShadow bumpShadow(int version, bool soft, float ownLight, float ownLobe, float lobeLight) {
+  const auto both = [&](float left) { return BumpShadow{lobeLight > 0 ? left : 1, left}; };
   if (version >= 5) {
-    if (ownLight * ownLobe * lobeLight < 0) return 0;
+    if (ownLight * ownLobe * lobeLight < 0) return soft ? both(0) : BumpShadow{1, 0};
     const float light = std::abs(ownLight), turned = std::abs(ownLobe);
-    if (!soft || light >= 1 || turned >= 1) return 1;
-    if (light < 1e-6f) return 0;
+    if (!soft || light >= 1 || turned >= 1) return {1, 1};
+    if (light < 1e-6f) return both(0);
     // masking of GGX facets as rough as the normal is turned
     const float alpha2 = std::clamp(0.125f * (1 / (turned * turned) - 1), 0.0f, 1.0f);
-    return 2 / (1 + std::sqrt(1 + alpha2 * (1 / (light * light) - 1)));
+    return both(2 / (1 + std::sqrt(1 + alpha2 * (1 / (light * light) - 1))));
   }
-  if (!soft) return 1;
+  if (!soft) return {1, version >= 4 && (ownLight < 0) != (lobeLight < 0) ? 0.0f : 1.0f};
   const float below = lobeLight * ownLobe, g = below != 0 ? ownLight / below : 0;
-  if (g >= 1) return 1;
-  return g < 0 ? 0 : g * (1 + g * (1 - g));
+  if (g >= 1) return {1, 1};
+  return both(g < 0 ? 0 : g * (1 + g * (1 - g)));
 }
 
 }  // namespace wardmis

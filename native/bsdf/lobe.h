@@ -245,6 +245,8 @@ inline Vec3<T> diffuseF(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
 constexpr bool isDiffuse(LobeKind k) {
   return k <= LobeKind::kRoughTranslucent || k == LobeKind::kVelvet || k == LobeKind::kSchlickSheen;
 }
+// Of which Cycles does not ask on which side of the normal the view is.
+constexpr bool seenFromBelow(LobeKind k) { return k <= LobeKind::kRoughTranslucent; }
 // Lobes that are mirrored to below are asked with wi turned over.
 constexpr bool isMirrored(LobeKind k) {
   return k == LobeKind::kTranslucent || k == LobeKind::kRoughTranslucent || k == LobeKind::kThinTransmission;
@@ -258,7 +260,8 @@ LobeValue<T> evaluate(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
   const T ax = T(l.ax), ay = T(l.ay);
   if (isMirrored(l.kind)) wi = flipped(wi);
   if (isDiffuse(l.kind)) {
-    if (!(wi.z > T(0)) || !(wo.z > T(0))) return {};
+    if (!(wi.z > T(0)) || (!seenFromBelow(l.kind) && !(wo.z > T(0)))) return {};
+    wo.z = std::max(wo.z, T(0));
     return {diffuseF(l, wi, wo) * wi.z, wi.z * (T(1) / kPi<T>)};
   }
   switch (l.kind) {

@@ -252,7 +252,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     for (size_t i = 1; i < f.size(); ++i) all += f[i];
     return all;
   };
-  // sharp: t's lobe has but one direction, which no other technique finds.
+  // sharp: in a direction which no other technique finds.
   const auto techniques = [&](size_t own, bool sharp) {
     return sharp ? maskOf(own) : techniquesFor<K>(plan.integrand, own);
   };
@@ -270,7 +270,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     }
     for (size_t i = 0; i < f.size(); ++i) {
       if (!present[i] || (t != i && t != kLight)) continue;
-      const TechniqueMask used = techniques(i, sharp);
+      const TechniqueMask used = techniques(sharp ? t : i, sharp);
       const Rgb value = f[i] * radiance;
       const float scale = mixture.scale(t, p, used);
       sum += value * scale;
@@ -293,6 +293,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     if (t < kLobes && !present[t]) continue;
     if (!kGeneral && !(wi.z > T(0))) continue;  // below the surface: zero, and it counts
     Values f{};
+    LitOtherwise<K> lit;
     Fractions<K> p{};
     const auto inWorld = [&] {
       return normalize(
@@ -311,7 +312,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
         f[t] = s.weight(from[k], wi, wo);
         p[t] = 1;
       } else {
-        s.evaluate(wi, wo, ahead, f, p);
+        s.evaluate(wi, wo, ahead, f, p, lit);
         if (t != kLight && !(p[t] > 0)) continue;
         for (size_t l = 0; l < kLobes; ++l)
           counts.underflows += present[l] && p[l] < std::numeric_limits<float>::min() ? 1 : 0;
@@ -329,9 +330,23 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       p[kCosine] = present[kCosine] ? cosine : 0.0f;
     }
 
+    // Light of an emitter, whose density is in p.
+    const auto addLight = [&](size_t own, Rgb radiance, uint8_t visibility) {
+      if constexpr (kGeneral)
+        if (lit.any) [[unlikely]] {
+          const float byLight = lit.share(p[kLight]);
+          Values same;
+          for (size_t i = 0; i < same.size(); ++i) same[i] = f[i] * (1 - byLight) + lit.same[i] * byLight;
+          add(own, false, ahead, same, radiance, p, visibility, set);
+          if (own == kLight) add(kLight, true, !ahead, lit.other, radiance * byLight, p, visibility, set);
+          return;
+        }
+      add(own, sharp, ahead, f, radiance, p, visibility, set);
+    };
     if (t == kLight) {
       LightSample& l = light[k];
-      if (!(l.pdf > 0) || !(kGeneral || dot(x.geometric, l.direction) > 0) || !(maxComponent(total(f)) > 0)) continue;
+      if (!(l.pdf > 0) || !(kGeneral || dot(x.geometric, l.direction) > 0)) continue;
+      if (!(maxComponent(total(f)) > 0) && !(lit.any && maxComponent(total(lit.same) + total(lit.other)) > 0)) continue;
       world.emitters.look(l, x.position, static_cast<int>(plan.vertex));
       if (!(l.pdf > 0) || isBlack(l.radiance)) continue;
       Ray shadow;
@@ -360,7 +375,11 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
         if constexpr (kGeneral) radiance *= left;
       }
       if (l.exclusive) {
-        Values each = seen(f, l.visibility, ahead);
+        Values each = seen(lit.any ? lit.same : f, l.visibility, ahead);
+        if (lit.any) [[unlikely]] {
+          const Values more = seen(lit.other, l.visibility, !ahead);
+          for (size_t i = 0; i < each.size(); ++i) each[i] += more[i];
+        }
         for (Rgb& value : each) value = value * radiance;
         sum += total(each) / (l.pdf * mixture.n[kLight]);
         const float scale = 1 / (l.pdf * mixture.n[kLight]);
@@ -375,7 +394,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
         }
       } else {
         p[kLight] = l.pdf;
-        add(kLight, false, ahead, f, radiance, p, l.visibility, set);
+        addLight(kLight, radiance, l.visibility);
       }
       continue;
     }
@@ -400,7 +419,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     Rgb seenThrough{1, 1, 1};
     // What light samples aim at is hidden beyond what they pass: the image must not depend on how many there are.
     const auto isHidden = [&](float pdf) {
-      if constexpr (kGeneral) return !sharp && pdf > 0 && world.isBeyond(ray);
+      if constexpr (kGeneral) return !sharp && pdf > 0 && world.isHidden(ray);
       return false;
     };
     const uint32_t key = combine(combine(plan.pixelKey, dimension + static_cast<uint32_t>(t)),
@@ -409,7 +428,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       const auto meet = [&](const EmitterHit& e) {
         if (isHidden(e.pdf)) return;
         p[kLight] = e.pdf;
-        add(t, sharp, ahead, f, kGeneral ? e.radiance * seenThrough : e.radiance, p, e.visibility, set);
+        addLight(t, kGeneral ? e.radiance * seenThrough : e.radiance, e.visibility);
       };
       world.emitters.along(ray, tMax, escaped, static_cast<int>(plan.vertex), meet, sky);
     });
@@ -420,8 +439,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       p[kLight] = world.emitters.trianglePdf(world.geometry.placements[hit.placement], hit, d, ray.path.time);
       Rgb radiance = interact<N, K>(world.scene, world.geometry, ray, hit).emission;
       if constexpr (kGeneral) radiance *= seenThrough;
-      if (!isHidden(p[kLight]))
-        add(t, sharp, ahead, f, radiance, p, world.geometry.placements[hit.placement].visibility, set);
+      if (!isHidden(p[kLight])) addLight(t, radiance, world.geometry.placements[hit.placement].visibility);
     }
     if constexpr (kGeneral)
       if (world.isBeyond(ray)) continue;

@@ -48,7 +48,7 @@ Framef resolveLobes(const Scene& scene, const Material& m, const ShadedPoint& po
     if (result < 0) return otherwise;
     const Vec3f n = directionOf(scene, *m.program, slots, result);
     const float l = length(n);
-    return l > 0 ? bent(n / l, point.geometric, point.wo) : otherwise;
+    return l > 0 ? n / l : otherwise;
   };
   const auto frameAround = [&](Vec3f n, bool anisotropic, float rotation, int along = -1) {
     if (!anisotropic) return Framef::around(n);
@@ -62,7 +62,8 @@ Framef resolveLobes(const Scene& scene, const Material& m, const ShadedPoint& po
     ward.weight = notNegative(color(m.specular));
     ward.kind = wardKind(m.variant);
     ward.ax = clampedAlpha(scalar(m.alphaX)), ward.ay = clampedAlpha(scalar(m.alphaY));
-    const Framef frame = frameAround(normalOf(m.normal, point.normal), ward.ax != ward.ay, m.rotation);
+    const Vec3f normal = bent(normalOf(m.normal, point.normal), point.geometric, point.wo);
+    const Framef frame = frameAround(normal, ward.ax != ward.ay, m.rotation);
     surface.begin(frame, point.wo);
     if (maxComponent(diffuse.weight) > 0) surface.add(diffuse);
     if (maxComponent(ward.weight) > 0) surface.add(ward);
@@ -90,14 +91,17 @@ Framef resolveLobes(const Scene& scene, const Material& m, const ShadedPoint& po
     const auto frameOf = [&](Vec3f normal) {
       return normal == point.normal ? uint8_t{0} : surface.addFrame(Framef::around(normal), c.version);
     };
-    // What would reflect into the surface is turned until it does not, as in Cycles; since 4.x not what is diffuse.
-    const auto reflecting = [&](Vec3f normal) { return surface::visiblyReflecting(point.geometric, point.wo, normal); };
+    // What would reflect into the surface is turned until it does not, as in Cycles; since 4.x not what is diffuse, but
+    // what is translucent is.
+    const auto reflecting = [&](Vec3f normal) {
+      return surface::visiblyReflecting(c.version, point.geometric, point.wo, normal);
+    };
     const Vec3f told = normalOf(c.normal, point.normal), n = reflecting(told);
     std::array<uint8_t, 3> at{};
     at[kBaseFrame] = anisotropic ? surface.addFrame(frameAround(n, true, scalar(c.rotation), c.tangent),
                                                     n == point.normal ? 0 : c.version)
                                  : frameOf(n);
-    const Vec3f dull = c.version >= 4 ? told : n;
+    const Vec3f dull = c.version >= 4 && c.type != ClosureType::kTranslucent ? told : n;
     const uint8_t atDiffuse = dull == point.normal ? uint8_t{0} : dull == n ? at[kBaseFrame] : frameOf(dull);
     at[kSheenFrame] = atDiffuse;
     if (c.type == ClosureType::kPrincipled3 || c.type == ClosureType::kPrincipled) {  // whose coat has its own normal

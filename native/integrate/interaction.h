@@ -107,9 +107,9 @@ inline Vec3f movedNormal(const Shape& s, const uint32_t* i, float u, float v, fl
 // A shading normal that looks away from the viewer is bent until it does not (else the silhouette turns black). One
 // that looks into the surface is meant so: there is light where both it and the surface's own normal see it.
 inline Vec3f bent(Vec3f ns, Vec3f ng, Vec3f wo) {
-  constexpr float kGrazing = 1e-3f;
+  constexpr float kGrazing = 1e-3f, kLevel = 1e-5f;  // whose sign is no rounding
   const float facing = dot(ns, wo);
-  return facing < kGrazing && dot(ns, ng) > 0 ? normalize(ns + wo * (kGrazing - facing)) : ns;
+  return facing < kGrazing && dot(ns, ng) > kLevel ? normalize(ns + wo * (kGrazing - facing)) : ns;
 }
 
 // The frame turned about its z.
@@ -208,7 +208,8 @@ InteractionOf<SurfaceOf<N, K>> interactWith(const Scene& scene, const LobeNumber
     x.primitive = {hit.placement, hit.shape, hit.triangle};
   else
     x.clearance = clearance(placement, corner, ng);
-  if (!shape.part->normals.empty()) ns = bent(ns, ng, x.wo);
+  // closures see to that themselves, where they do
+  if (!shape.part->normals.empty() && m.closures.empty()) ns = bent(ns, ng, x.wo);
 
   const Vec2f uv = uvAt(shape, hit);
   const ShadedPoint point{placement, shape, hit.triangle, hit.u,  hit.v,  x.position,

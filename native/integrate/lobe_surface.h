@@ -15,6 +15,18 @@
 
 namespace wardmis {
 
+// f cos of what samples of lights bring, by technique, where it is not what samples of the surface bring, as in Cycles:
+// of lobes to whose normal light leaves on the same side as to the face, and on the other.
+template <size_t K>
+struct LitOtherwise {
+  std::array<Rgb, K - 1> same{}, other{};
+  float density = 0;  // of all lobes together, wherever they may leave
+  bool any = false;
+  // The part of light that light samples, of density `light`, bring where surface samples find it, too: Cycles' power
+  // heuristic, which is all that is left where it lets the latter find nothing.
+  float share(float light) const { return density > 0 ? 1 / (1 + (density / light) * (density / light)) : 1; }
+};
+
 template <size_t K>
 class LobeSurface {
  public:
@@ -145,24 +157,37 @@ class LobeSurface {
   // f cos of each technique's lobes and their densities at a direction wi, both in frame 0; ahead: it leaves on the
   // side of the viewer. Sharp lobes are zero.
   template <class T>
-  void evaluate(Vec3<T> wi, Vec3<T> wo, bool ahead, std::array<Rgb, K - 1>& f, Fractions<K>& p) const {
-    const float cosine = ahead ? std::max(static_cast<float>(wi.z), 0.0f) * (1 / kPi<float>) : 0;
-    f[kCosine] = diffuse_ * cosine;
-    p[kCosine] = hasDiffuse() ? cosine : 0;
+  void evaluate(Vec3<T> wi, Vec3<T> wo, bool ahead, std::array<Rgb, K - 1>& f, Fractions<K>& p,
+                LitOtherwise<K>& lit) const {
+    const float cosine = std::max(static_cast<float>(wi.z), 0.0f) * (1 / kPi<float>);
+    (ahead ? f : lit.other)[kCosine] = diffuse_ * cosine;
+    p[kCosine] = hasDiffuse() && ahead ? cosine : 0;
+    lit.same[kCosine] = f[kCosine];
+    lit.density = strength_[kCosine] * cosine;
+    lit.any = !ahead && hasDiffuse() && cosine > 0;
     for (int i = 0; i < count_; ++i) {
       const Lobe& l = lobe_[i];
-      if (isDelta(l.kind) || !(ahead ? wardmis::reflects(l.kind) : wardmis::transmits(l.kind))) continue;
+      if (isDelta(l.kind)) continue;
       const Vec3<T> w = local(l, wi);
-      if ((w.z > T(0)) != ahead) continue;
+      const bool above = w.z > T(0);
+      if (!(above ? wardmis::reflects(l.kind) : w.z < T(0) && wardmis::transmits(l.kind))) continue;
       const LobeValue<T> v = wardmis::evaluate(l, w, local(l, wo));
-      const float lit = bump_[l.frame] == 0
-                            ? 1
-                            : bumpShadow(bump_[l.frame], hasSoftTerminator(l.kind), static_cast<float>(wi.z),
-                                         ownCosine_[l.frame], static_cast<float>(w.z));
-      f[slot_[i]] +=
-          Rgb{static_cast<float>(v.fCos.x), static_cast<float>(v.fCos.y), static_cast<float>(v.fCos.z)} * lit;
-      if (slot_[i] != kCosine) p[slot_[i]] += share_[i] * static_cast<float>(v.pdf);
+      if (!(v.pdf > T(0))) continue;
+      const Rgb value{static_cast<float>(v.fCos.x), static_cast<float>(v.fCos.y), static_cast<float>(v.fCos.z)};
+      const BumpShadow left = bump_[l.frame] == 0
+                                  ? BumpShadow{1, 1}
+                                  : bumpShadow(bump_[l.frame], hasSoftTerminator(l.kind), static_cast<float>(wi.z),
+                                               ownCosine_[l.frame], static_cast<float>(w.z));
+      if (above == ahead) f[slot_[i]] += value * left.bySurface;
+      if (slot_[i] != kCosine) {
+        const float density = share_[i] * static_cast<float>(v.pdf);
+        if (above == ahead) p[slot_[i]] += density;
+        lit.density += strength_[slot_[i]] * density;
+      }
+      (above == ahead ? lit.same : lit.other)[slot_[i]] += value * left.byLight;
+      lit.any = lit.any || left.byLight != (above == ahead ? left.bySurface : 0);
     }
+    if (lit.any) lit.density /= strength();
   }
 
   struct Sample {

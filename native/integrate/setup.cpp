@@ -79,6 +79,16 @@ SampleCost<K> givenCost(const GivenCost& given) {
   return cost;
 }
 
+// How many surfaces rays pass that are no shadow rays: up to version 4 one more than these, since 5 as many, but always
+// one.
+int mostFollowed(const Scene& scene, int mostTransparent) {
+  const auto isNew = [](const Closure& c) { return c.version >= 5; };
+  const bool any = std::any_of(scene.materials.begin(), scene.materials.end(), [&](const Material& m) {
+    return m.transparent && std::any_of(m.closures.begin(), m.closures.end(), isNew);
+  });
+  return any ? std::max(mostTransparent, 1) : mostTransparent + 1;
+}
+
 }  // namespace
 
 BuiltScene::BuiltScene(const Scene& s, int threads)
@@ -122,8 +132,12 @@ RenderSetup<K>::RenderSetup(const BuiltScene& built, const RenderSettings& s)
     : needs(wardmis::needs(built, s)),
       kernelNeeds(wardmis::kernelNeeds(built, s)),
       techniques(techniquesOf<K>(built, needs)),
-      world_{built.scene, built.geometry, built.accel, built.emitters,
-             (needs & kNeedsTransparency) != 0 ? s.maxTransparent : 0},
+      world_{built.scene,
+             built.geometry,
+             built.accel,
+             built.emitters,
+             (needs & kNeedsTransparency) != 0 ? s.maxTransparent : 0,
+             mostFollowed(built.scene, s.maxTransparent)},
       camera_(*built.scene.camera, built.scene.film),
       shutter_(built.scene.film.shutter.open, built.scene.film.shutter.rolling),
       filter_(built.scene.film.filter, built.scene.film.filterWidth),

@@ -16,11 +16,14 @@ struct RenderScene {
   const Accel& accel;
   const Emitters& emitters;
   // Surfaces that a path passes straight, all its rays together, and a shadow ray from there, to which the next one is
-  // opaque. Other rays pass that one, too, but what they meet then shows them its emission alone. 0 also where no
-  // surface lets light through.
+  // opaque. 0 also where no surface lets light through.
   int mostTransparent = 0;
-  // Whether a ray has passed that one more.
-  bool isBeyond(const Ray& ray) const { return ray.path.transparent > mostTransparent; }
+  // Those after which other rays pass no more, and what they meet shows them its emission alone.
+  int mostFollowed = 1;
+  // Whether a ray has passed more than shadow rays do.
+  bool isHidden(const Ray& ray) const { return ray.path.transparent > mostTransparent; }
+  // Whether it has passed as many as it may.
+  bool isBeyond(const Ray& ray) const { return ray.path.transparent >= mostFollowed; }
 };
 
 namespace detail {
@@ -60,7 +63,7 @@ Hit trace(const RenderScene& world, Ray& ray, uint32_t key, Rgb& weight, Along&&
     if constexpr ((N & kNeedsLobes) == 0) {
       return hit;
     } else {
-      if (!hit.valid() || !detail::mayPass(world, ray, hit, world.mostTransparent + 1)) return hit;
+      if (!hit.valid() || !detail::mayPass(world, ray, hit, world.mostFollowed)) return hit;
       const auto x = interact<N, K>(world.scene, world.geometry, ray, hit);
       const float q = detail::passing(x);
       if (!(q > 0)) return hit;

@@ -16,7 +16,7 @@ Rgb belowLayers(const ShadingContext& c, Principled layers, Vec3f normal, Vec3f 
   };
   const float share = std::clamp(layers.coatWeight, 0.0f, 1.0f);
   return expand(layers, {1, 1, 1}, cosine(normal),
-                cosine(surface::visiblyReflecting(c.trueNormal, c.incoming, coatNormal)),
+                cosine(surface::visiblyReflecting(4, c.trueNormal, c.incoming, coatNormal)),
                 cosine(normal * (1 - share) + coatNormal * share), [](const Lobe&) {});
 }
 

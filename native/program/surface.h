@@ -68,27 +68,32 @@ inline Vec3f normalMapFixed(const ShadingContext& c, bool object, Rgb color, flo
   return strengthened(c, c.backfacing ? -n : n, strength);
 }
 
-// n bent towards the true normal just so far that the view's reflection leaves the surface, as Cycles has it.
-inline Vec3f visiblyReflecting(Vec3f trueNormal, Vec3f incoming, Vec3f n) {
+// n bent towards the true normal just so far that the view's reflection leaves the surface, as Cycles has it: in 3.4 by
+// what comes out of either root, since 4.x by the side from which the view looks.
+inline Vec3f visiblyReflecting(uint32_t version, Vec3f trueNormal, Vec3f incoming, Vec3f n) {
   const float iz = dot(incoming, trueNormal), least = std::min(0.9f * iz, 0.01f);
   if (dot(trueNormal, n * (2 * dot(n, incoming)) - incoming) >= least) return n;
   // In the plane of both normals, z the true one: the reflection's height 2 (n.i) n.z - i.z is to be `least`, which is
   // a quadratic equation for n.z^2.
-  const Vec3f x = normalize(n - trueNormal * dot(n, trueNormal));
+  const Vec3f across = n - trueNormal * dot(n, trueNormal), x = dot(across, across) > 0 ? normalize(across) : n;
   const float ix = dot(incoming, x), a = ix * ix + iz * iz;
   const float b = arithmetic::squareRoot(ix * ix * (a - least * least)), c = iz * least + a;
   const float z2[2] = {0.5f / a * (c + b), 0.5f / a * (c - b)};
+  const auto at = [&](float z) {
+    return x * arithmetic::squareRoot(std::max(1 - z, 0.0f)) + trueNormal * arithmetic::squareRoot(std::max(z, 0.0f));
+  };
+  if (version >= 4) return at(z2[ix < 0 ? 0 : 1]);
   float best = 0;
   Vec3f found = trueNormal;
   bool any = false;
   const auto valid = [](float v) { return v > 1e-5f && v <= 1 + 1e-5f; };
   for (const float z : z2) {
     if (!valid(z)) continue;
-    const float nx = arithmetic::squareRoot(1 - z), nz = arithmetic::squareRoot(z);
-    const float height = 2 * (nx * ix + nz * iz) * nz - iz;
+    const Vec3f turned = at(z);
+    const float height = 2 * dot(turned, incoming) * dot(turned, trueNormal) - iz;
     // of two that are above the surface the lower one, else the higher one
     const bool better = height >= 1e-5f && best >= 1e-5f ? height < best : height > best;
-    if (!any || better) best = height, found = x * nx + trueNormal * nz;
+    if (!any || better) best = height, found = turned;
     any = true;
   }
   return found;
@@ -103,7 +108,7 @@ inline Vec3f bump(const ShadingContext& c, float h, float hx, float hy, float di
   strength = std::max(strength, 0.0f);
   Vec3f n = safeNormalize(normal * (width * std::abs(det)) - gradient * (det < 0 ? -distance : distance));
   n = isUsable(n) ? normalize(n * strength + normal * (1 - strength)) : normal;
-  return version == 3 ? visiblyReflecting(c.trueNormal, c.incoming, n) : n;
+  return version == 3 ? visiblyReflecting(version, c.trueNormal, c.incoming, n) : n;
 }
 
 // Reflectance of a dielectric for unpolarised light.

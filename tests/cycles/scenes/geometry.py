@@ -6,6 +6,7 @@ from typing import Any
 
 import bpy
 import numpy as np
+from mathutils import Vector
 from stage import add as node
 from stage import (
     ball,
@@ -16,6 +17,7 @@ from stage import (
     floor,
     gradient,
     image,
+    material,
     mesh,
     painted,
     place,
@@ -166,6 +168,42 @@ def custom_normals_round():
 @scene(within=0.08, why="where face and normal disagree, the edge of what is lit is not quite Cycles'")
 def custom_normals_backwards():
     custom_normals(lambda n: -n)
+
+
+def bent(kind, bend, **inputs):
+    """A ball of few faces whose normals are bent."""
+    stage()
+    made, tree, output = material(kind)
+    tree.links.new(node(tree, f"Bsdf{kind}", **inputs).outputs[0], output.inputs["Surface"])
+    data = ball(made, location=(0, 0, 1), fineness=8).data
+    data.polygons.foreach_set("use_smooth", [True] * len(data.polygons))
+    if hasattr(data, "use_auto_smooth"):
+        data.use_auto_smooth = True
+    data.normals_split_custom_set([bend(p.normal, i) for p in data.polygons for i in p.loop_indices])
+
+
+def upwards(n, _):
+    return (n + Vector((0, 0, 1.5))).normalized()
+
+
+@scene
+def translucent_backwards():
+    bent("Translucent", lambda n, i: -n)
+
+
+@scene
+def translucent_both_ways():
+    bent("Translucent", lambda n, i: n if i % 2 else -n)
+
+
+@scene(bounces=2)
+def translucent_upwards():
+    bent("Translucent", upwards)
+
+
+@scene(bounces=2)
+def glass_upwards():
+    bent("Glass", upwards, Roughness=0.3)
 
 
 @scene

@@ -42,16 +42,44 @@ def limited(transmission: int, transparent: int) -> None:
     settings.wardmis.bounces = "cycles"
 
 
-def enter(name: str, build: Callable[[], None]) -> None:
+def enter(name: str, build: Callable[[], None], **more: Any) -> None:
     build.__name__ = name
-    scene(bounces=8)(build)
+    scene(bounces=8, **more)(build)
 
 
 for bounces in (0, 1):
     enter(f"refraction_{bounces}", lambda bounces=bounces: (panes("Refraction"), limited(bounces, 8)))
 enter("translucent_1", lambda: (panes("Translucent"), limited(1, 8)))
 enter("glass_1", lambda: (panes("Glass"), limited(1, 8)))
-enter("transparent_1", lambda: (panes("Transparent"), limited(8, 1)))
+enter(
+    "transparent_1",
+    lambda: (panes("Transparent"), limited(8, 1)),
+    within=0.02,
+    why="a lamp that a ray passes counts as a surface in Cycles",
+)
+
+
+def behind(count: int, limit: int) -> None:
+    """A floor, a glowing ball and the sky, behind panes that fill the view."""
+    floor()
+    glow, tree, output = material("Glow")
+    tree.links.new(add(tree, "Emission").outputs[0], output.inputs["Surface"])
+    ball(glow, location=(0, 0, 1), radius=0.8)
+    made = shader("Transparent")
+    for i in range(count):
+        pane = mesh("Pane", *square(20), made)
+        pane.location, pane.rotation_euler = (0, -1.5 - 0.2 * i, 0), (math.pi / 2, 0, 0)
+    sky((0.3, 0.4, 0.5))
+    camera()
+    limited(8, limit)
+
+
+for count, limit in ((1, 0), (2, 0), (1, 2), (2, 2), (3, 2), (4, 2)):
+    # what rays from the floor meet by chance behind one more pane, as in transparent_0
+    far = (
+        {} if limit else {"within": 0.05, "why": "rays that meet what glows by chance pass one surface more in Cycles"}
+    )
+    enter(f"behind_{count}_of_{limit}", lambda count=count, limit=limit: behind(count, limit), **far)
 
 
 @scene(bounces=8, within=0.02, why="rays that meet the lamp by chance pass one surface more in Cycles")

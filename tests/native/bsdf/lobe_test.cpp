@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "bsdf/bump_shadow.h"
 #include "golden.h"
 #include "lobes.h"
 #include "statistics.h"
@@ -68,7 +69,9 @@ TEST(Lobe, LiesOnItsSideAlone) {
     const double side = transmits(l.kind) ? -1 : 1;
     for (int i = 0; i < 200; ++i) {
       const Vec wo = random.above(), wi = random.above() * -side, below = -random.above();
-      EXPECT_EQ(evaluate(l, random.above() * side, below).fCos.x, 0);  // wo below
+      if (!detail::seenFromBelow(l.kind)) {
+        EXPECT_EQ(evaluate(l, random.above() * side, below).fCos.x, 0);  // wo below
+      }
       if (isGlass(l.kind)) continue;
       EXPECT_EQ(evaluate(l, wi, wo).fCos.x, 0);
       EXPECT_EQ(weight(l, wi, wo).x, 0);
@@ -229,4 +232,22 @@ TEST(Fresnel, KnowsF82) {
 }
 
 }  // namespace
+// A normal turned by 45 degrees: light between the surface and it, and light that leaves the surface on the other side.
+TEST(BumpShadow, DarkensWhatGoesThroughForLightSamplesAlone) {
+  const float turned = std::sqrt(0.5f);
+  for (int version : {3, 4, 5})
+    for (float side : {1.0f, -1.0f}) {
+      const BumpShadow low = bumpShadow(version, true, 0.2f * side, turned, 0.8f * side),
+                       other = bumpShadow(version, true, -0.2f * side, turned, 0.5f * side),
+                       facets = bumpShadow(version, false, -0.2f * side, turned, 0.5f * side);
+      EXPECT_GT(low.byLight, 0.1);
+      EXPECT_LT(low.byLight, 0.9);
+      EXPECT_EQ(low.bySurface, side > 0 ? low.byLight : 1);
+      EXPECT_EQ(other.byLight, 0);
+      EXPECT_EQ(other.bySurface, side > 0 ? 0 : 1);
+      EXPECT_EQ(facets.byLight, version == 3 ? 1 : 0);
+      EXPECT_EQ(facets.bySurface, 1);
+    }
+}
+
 }  // namespace wardmis
