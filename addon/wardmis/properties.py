@@ -3,10 +3,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
 
 from . import light_paths
+from .layout import redraw
 
 # Each with its condition: when it is good, when it is not
 ALLOCATIONS = (
@@ -138,6 +141,11 @@ FILTERS = (
 )
 
 
+def _draw_anew(_self: Any, _context: Any) -> None:
+    """A change that the results of a comparison tell of in another editor, whether what they recommend is in use."""
+    redraw()
+
+
 class WARDMIS_PG_scene(bpy.types.PropertyGroup):
     allocation: EnumProperty(
         name="Allocation",
@@ -146,6 +154,7 @@ class WARDMIS_PG_scene(bpy.types.PropertyGroup):
         "never the brightness",
         items=ALLOCATIONS,
         default="auto",
+        update=_draw_anew,
     )
     weights: EnumProperty(
         name="Weights",
@@ -153,15 +162,21 @@ class WARDMIS_PG_scene(bpy.types.PropertyGroup):
         "the noise, never the brightness",
         items=WEIGHTS,
         default="auto",
+        update=_draw_anew,
     )
     integrand: EnumProperty(
         name="Integrand",
         description="Whether gloss and diffuse reflection are sampled apart. It changes the noise, never the brightness",
         items=INTEGRANDS,
         default="split",
+        update=_draw_anew,
     )
     integrator: EnumProperty(
-        name="Integrator", description="Which of the light is rendered", items=INTEGRATORS, default="path"
+        name="Integrator",
+        description="Which of the light is rendered",
+        items=INTEGRATORS,
+        default="path",
+        update=_draw_anew,
     )
     stop_by: EnumProperty(name="Stop by", description="What ends the render", items=STOPS, default="samples")
     samples: IntProperty(
@@ -188,6 +203,7 @@ class WARDMIS_PG_scene(bpy.types.PropertyGroup):
         default=3,
         min=1,
         max=256,
+        update=_draw_anew,
     )
     pilot_samples: IntProperty(
         name="Pilot Samples",
@@ -198,6 +214,7 @@ class WARDMIS_PG_scene(bpy.types.PropertyGroup):
         min=1,
         soft_max=64,
         max=1 << 20,
+        update=_draw_anew,
     )
     min_fraction: FloatProperty(
         name="Least Share",
@@ -208,6 +225,7 @@ class WARDMIS_PG_scene(bpy.types.PropertyGroup):
         max=0.5,
         precision=3,
         subtype="FACTOR",
+        update=_draw_anew,
     )
     max_depth: IntProperty(
         name="Max Depth",
@@ -216,6 +234,7 @@ class WARDMIS_PG_scene(bpy.types.PropertyGroup):
         min=1,
         soft_max=64,
         max=1024,
+        update=_draw_anew,
     )
     bounces: EnumProperty(
         name="Bounces",
@@ -261,6 +280,7 @@ class WARDMIS_PG_scene(bpy.types.PropertyGroup):
         description="How random numbers are spread over a pixel: the more evenly, the less noise",
         items=SAMPLERS,
         default="sobol",
+        update=_draw_anew,
     )
     seed: IntProperty(name="Seed", description="Another seed gives the same image with other noise", default=0, min=0)
     use_animated_seed: BoolProperty(

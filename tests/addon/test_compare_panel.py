@@ -438,7 +438,9 @@ class Results(PanelTest):
         report, render = properties.report(), self.scene.wardmis
         self.assertEqual(report.recommended, "variance")
         self.assertFalse(operators.is_used(render, report))
-        bpy.ops.wardmis.compare_use()
+        with mock.patch("wardmis.properties.redraw") as drawn:  # the button's own label, in another editor too
+            bpy.ops.wardmis.compare_use()
+        self.assertEqual(drawn.call_count, len(report.settings(report.recommended)))
         self.assertEqual((render.allocation, render.weights, render.samples_per_hit), ("variance", "balance", 5))
         self.assertAlmostEqual(render.min_fraction, 0.2, 6)
         self.assertTrue(operators.is_used(render, report))
