@@ -390,12 +390,12 @@ class Reporter {
     return {{"target", goal.target},
             {"seconds", toJson(seconds)},
             {"ratio", toJson(ratio)},
-            {"verdict", !seconds          ? none
-                        : &m == base_     ? "baseline"
-                        : !ratio          ? "not compared"
-                        : ratio->high < 1 ? "faster"
-                        : ratio->low > 1  ? "slower"
-                                          : "tie"}};
+            {"verdict", !seconds                   ? none
+                        : &m == base_              ? "baseline"
+                        : !ratio                   ? "not compared"
+                        : ratio->high < 1 - kAlike ? "faster"
+                        : ratio->low > 1 + kAlike  ? "slower"
+                                                   : "tie"}};
   }
 
   json equalTime(const Measured& m, const Goal& goal) const {

@@ -16,8 +16,7 @@ using nlohmann::json;
 
 constexpr size_t kFewSeeds = 8;  // under which the line calls itself a hint
 constexpr size_t kFewNames = 3;  // that are listed
-constexpr double kWide = 1.5;    // upper over lower end of an interval that the line states
-constexpr double kAlike = 1e-4;  // of ratios that are one in all that is printed
+constexpr double kWide = 1.5;    // upper over lower end of an interval that the line states, and that is no tie
 
 enum class Side { kUnknown, kBetter, kWorse, kTie };
 
@@ -25,6 +24,14 @@ enum class Side { kUnknown, kBetter, kWorse, kTie };
 Side sideOf(const json& ratio) {
   if (!ratio.is_object()) return Side::kUnknown;
   return ratio["high"] < 1 - kAlike ? Side::kBetter : ratio["low"] > 1 + kAlike ? Side::kWorse : Side::kTie;
+}
+bool isWide(const json& ratio) { return ratio["high"].get<double>() >= kWide * ratio["low"].get<double>(); }
+
+// Never 100 of what is less.
+std::string percent(double p) {
+  int digits = p < 0.1 ? 1 : 0;
+  while (p < 1 && digits < 4 && fmt::format("{:.{}f}", 100 * p, digits).starts_with("100")) ++digits;
+  return fmt::format("{:.{}f}", 100 * p, digits);
 }
 
 bool isExternal(const json& c) { return !c["estimates"].is_string(); }
@@ -41,23 +48,24 @@ const json& ratioIn(const json& c, const char* column) {
   return c[column].is_object() ? c[column]["ratio"] : none;
 }
 
-// "half its time", "62 % of its time"; with the interval where that is wide.
+// "half its time", "62 % of its time"; with the interval where that is wide. A fraction in words is within the
+// interval.
 std::string share(const json& ratio, const char* of) {
   const double x = ratio["mean"];
-  const bool wide = ratio["high"].get<double>() >= kWide * ratio["low"].get<double>();
+  const bool wide = isWide(ratio);
   if (!wide)
     for (const auto& [part, name] :
          {std::pair(2, "half"), {3, "a third of"}, {4, "a quarter of"}, {5, "a fifth of"}, {10, "a tenth of"}})
-      if (std::abs(x * part - 1) < 0.06) return fmt::format("{} {}", name, of);
-  const auto percent = [](double p) { return fmt::format("{:.{}f}", 100 * p, p < 0.1 ? 1 : 0); };
+      if (std::abs(x * part - 1) < 0.06 && ratio["low"] <= 1.0 / part && ratio["high"] >= 1.0 / part)
+        return fmt::format("{} {}", name, of);
   std::string text = fmt::format("{} % of {}", percent(x), of);
   if (wide) text += fmt::format(" ({} to {} %)", percent(ratio["low"]), percent(ratio["high"]));
   return text;
 }
 
-// "the noise of equal in half its time", or at equal time "half the noise of equal in the same time"
+// "the noise of equal in half its time", or at equal time "half the error of equal in the same time"
 std::string gain(const json& ratio, const std::string& name) {
-  return ratio["of"] == "error" ? fmt::format("{} in the same time", share(ratio, ("the noise of " + name).c_str()))
+  return ratio["of"] == "error" ? fmt::format("{} in the same time", share(ratio, ("the error of " + name).c_str()))
                                 : fmt::format("the noise of {} in {}", name, share(ratio, "its time"));
 }
 
@@ -111,7 +119,8 @@ std::string recommended(const json& r) {
 std::string verdictText(const json& r, const std::string& use, const json& ratios) {
   if (use.empty()) return noChoice(r);
   const json& base = baselineOf(r);
-  std::vector<std::string> brings, ties, slower, unsure, ahead, even;
+  std::vector<std::string> brings, ties, slower, unsure, ahead, even, open;
+  std::string atEqualTime;  // of what is a tie at the target, and none in the other column
   for (const json& c : r["configurations"]) {
     const std::string name = c["name"];
     if (name == use) continue;
@@ -120,7 +129,7 @@ std::string verdictText(const json& r, const std::string& use, const json& ratio
     if (isExternal(c)) {
       if (side == Side::kBetter) brings.push_back(gain(ratio, name));
       if (side == Side::kWorse) ahead.push_back(fmt::format("{} is better here: {}.", name, gain(inverse(ratio), use)));
-      if (side == Side::kTie) even.push_back(name);
+      if (side == Side::kTie) (isWide(ratio) ? open : even).push_back(name);
       if (side == Side::kUnknown) unsure.push_back(name);
     } else if (c["estimates"] != base["estimates"]) {
       continue;  // no rival
@@ -128,22 +137,32 @@ std::string verdictText(const json& r, const std::string& use, const json& ratio
       unsure.push_back(name);
     } else if (side == Side::kBetter && name == base["name"]) {
       brings.insert(brings.begin(), gain(ratio, name));
+    } else if (side == Side::kBetter) {
+      slower.push_back(name);
+    } else if (const Side error =
+                   use == base["name"] && ratio["of"] == "time" ? sideOf(ratioIn(c, "equal_time")) : Side::kTie;
+               error == Side::kBetter || error == Side::kWorse) {
+      atEqualTime += fmt::format(" {} is no sooner at the target, and has {} error in the same time.", name,
+                                 error == Side::kBetter ? "less" : "more");
     } else {
-      (side == Side::kBetter ? slower : ties).push_back(name);
+      (isWide(ratio) ? open : ties).push_back(name);
     }
   }
+  const bool undecided = !ties.empty() || !open.empty() || !atEqualTime.empty() || !unsure.empty();
   std::string text;
   for (const std::string& each : ahead) text += each + " ";
   text += fmt::format("{} {}", ahead.empty() ? "Use" : "Of WardMIS, use", use);
   if (!brings.empty())
     text += ": " + listed(brings);
-  else if (ahead.empty() && even.empty() && !ties.empty())
-    text += ": nothing here is surely better";
-  else if (ahead.empty() && even.empty() && !slower.empty())
-    text += ": nothing here is better";
+  else if (ahead.empty() && even.empty() &&
+           (undecided ? ties.size() + open.size() + slower.size() > 0 : !slower.empty()))
+    text += undecided ? ": nothing here is surely better" : ": nothing here is better";
   text += ".";
   if (!even.empty()) text += fmt::format(" Against {}, it is a tie.", listed(even));
-  text += sentence(ties, "is a tie", "are ties") + sentence(slower, "is worse", "are worse");
+  text += sentence(ties, "is a tie", "are ties") + atEqualTime + sentence(slower, "is worse", "are worse");
+  if (!open.empty())
+    text += open.size() > kFewNames ? fmt::format(" To {} others no difference was found.", open.size())
+                                    : fmt::format(" No difference to {} was found.", listed(open));
   text += sentence(unsure, "cannot be compared with it", "cannot be compared with it");
   if (r["metric"] != "relmse") text += " The rarest, brightest pixels are left out of this.";
   const size_t seeds = r["seeds"].size();

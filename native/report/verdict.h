@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What to use, and what it brings, in one plain line. It says no more than the intervals do: ties are ties.
+// What to use, and what it brings, in one plain line. It says no more than the intervals do: ties are ties, and where
+// an interval is too wide for one, no difference was found.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,6 +8,8 @@
 #include <vector>
 
 namespace wardmis {
+
+constexpr double kAlike = 1e-4;  // of ratios that are one in all that is printed
 
 // The configuration to use, out of those of WardMIS that estimate what the baseline does without a bias: the one that
 // is surely sooner than the baseline at the target, the soonest of several; where no time can be compared, the one that

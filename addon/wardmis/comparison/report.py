@@ -173,6 +173,7 @@ def _row(c: dict[str, Any]) -> Row:
         row.error = f"{equal_time['error']['mean']:.3g}"
     ratio = equal_time.get("ratio")
     if ratio:
-        row.ratio = f"{ratio['mean']:.2f} ({ratio['low']:.2f}–{ratio['high']:.2f})"
+        mean, low, high = (f"{x:.2f}" if x >= 0.1 else f"{x:.2g}" for x in (ratio["mean"], ratio["low"], ratio["high"]))
+        row.ratio = f"{mean} ({low}–{high})"
     row.verdict = VERDICTS.get(str((c.get("time_to_target") or {}).get("verdict")), "")
     return row

@@ -94,7 +94,7 @@
     return h("span", {}, mean, range ? h("span", { class: "range" }, range) : null, tail, word ? h("span", { class: "word" }, word) : null);
   }
 
-  const isTie = (i) => i.low <= 1 && i.high >= 1;
+  const isTie = (i) => i.low <= 1 + 1e-4 && i.high >= 1 - 1e-4; // as the verdict has it
 
   // A ratio to the baseline.
   function ratio(i) {

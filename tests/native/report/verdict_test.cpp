@@ -79,7 +79,7 @@ TEST(Verdict, withoutATimeTheErrorAtEqualTimeDecides) {
   r["configurations"][0]["time_to_target"]["seconds"] = nullptr;
   EXPECT_EQ(recommended(r), "auto");
   EXPECT_EQ(verdictText(r, "auto", {{"equal", of("error", ratio(.2, .25, .28))}}),
-            "Use auto: a quarter of the noise of equal in the same time.");
+            "Use auto: a quarter of the error of equal in the same time.");
 }
 
 TEST(Verdict, saysHowUnsureItIs) {
@@ -90,6 +90,33 @@ TEST(Verdict, saysHowUnsureItIs) {
   const std::string text = verdictText(r, "auto", {{"equal", kHalf}});
   for (const char* part : {"2 seeds this is a hint", "stopped early", "brightest pixels are left out"})
     EXPECT_NE(text.find(part), std::string::npos) << text;
+}
+
+TEST(Verdict, wordsAreWithinTheirInterval) {
+  const auto said = [](double low, double mean, double high) {
+    const json r = report({configuration("auto", ratio(low, mean, high))});
+    return verdictText(r, "auto", {{"equal", of("time", ratio(low, mean, high))}});
+  };
+  EXPECT_EQ(said(.49, .51, .53), "Use auto: the noise of equal in half its time.");
+  EXPECT_EQ(said(.51, .52, .53), "Use auto: the noise of equal in 52 % of its time.");
+  EXPECT_EQ(said(.991, .996, .999), "Use auto: the noise of equal in 99.6 % of its time.");
+  EXPECT_EQ(said(.9991, .9996, .9998), "Use auto: the noise of equal in 99.96 % of its time.");
+}
+
+TEST(Verdict, aTieIsOneInBothColumnsAndNarrow) {
+  const json wide = of("time", ratio(.4, 1.1, 3));
+  const auto said = [](const json& error, const json& time) {
+    return verdictText(report({configuration("auto", ratio(.9, 1, 1.1), error)}), "equal", {{"auto", time}});
+  };
+  EXPECT_EQ(said(ratio(.95, 1, 1.05), kTie), "Use equal: nothing here is surely better. auto is a tie.");
+  EXPECT_EQ(said(ratio(1.1, 1.2, 1.3), kTie),
+            "Use equal. auto is no sooner at the target, and has more error in the same time.");
+  EXPECT_EQ(said(ratio(.7, .8, .9), kTie),
+            "Use equal. auto is no sooner at the target, and has less error in the same time.");
+  EXPECT_EQ(said(ratio(.4, 1.1, 3), wide),
+            "Use equal: nothing here is surely better. No difference to auto was found.");
+  EXPECT_EQ(verdictText(report({cycles()}), "equal", {{"Cycles", wide}}),
+            "Use equal: nothing here is surely better. No difference to Cycles was found.");
 }
 
 TEST(Verdict, neitherBiasedNorOtherLightIsUsed) {
