@@ -339,6 +339,29 @@ def of_no_surface():
         tree.links.new(weighted(tree, outputs), tree.nodes["Emission"].inputs["Color"])
 
 
+@scene(without=(4, 3))
+def in_their_space():
+    """Stretched and turned; Cycles 4 takes an arbitrary space for a lamp's."""
+    things()
+    for kind, position, power, color, settings in (
+        ("POINT", (-2, -2, 4), 60, RED, {"shadow_soft_size": 0.3}),
+        ("SPOT", (2, -3, 3), 100, GREEN, {"spot_size": 1.5, "spot_blend": 0.2}),
+        ("SUN", (1, 2, 4), 0.5, BLUE, {"angle": 0.2}),
+    ):
+        tree = tree_of(lamp(kind, position, power, color, turned=0.7, scale=(1, 1.5, 0.7), **settings))
+        normal = add(tree, "NewGeometry").outputs["Normal"]
+        spaces = {"vector_type": "VECTOR", "convert_from": "WORLD", "convert_to": "OBJECT"}
+        moved = add(tree, "VectorTransform", spaces, Vector=normal)
+        total = weighted(tree, [("TexCoord", "Normal", 0.3)])
+        total.node.inputs[2].default_value = 1, 1, 1
+        both = add(tree, "VectorMath", {"operation": "MULTIPLY_ADD"}, Vector=moved.outputs[0])
+        both.inputs[1].default_value = 0.2, 0.2, 0.2
+        tree.links.new(total, both.inputs[2])
+        dotted = add(tree, "VectorMath", {"operation": "DOT_PRODUCT"}, Vector=both.outputs[0])
+        dotted.inputs[1].default_value = 0.3, 0.5, 0.7
+        tree.links.new(dotted.outputs["Value"], tree.nodes["Emission"].inputs["Strength"])
+
+
 @scene
 def light_path():
     """Lamps are looked at for rays of all kinds at once: none of these is known."""

@@ -113,6 +113,27 @@ def _reflection(_use: NodeUse, p: Reader) -> Value | None:
     return p("incoming") if compat.CYCLES < 5 else None
 
 
+def _normal(_use: NodeUse, p: Reader) -> Value | None:
+    """In the space of a spot as it stands; its round cone has another one."""
+    assert p.lamp is not None
+    if p.lamp.type != "SPOT" or compat.CYCLES >= 4:
+        return None
+    return p("vector-normalize", p.mapped(p("normal"), [p.lamp.normals.inverted_safe()]))
+
+
+def _transform(use: NodeUse, p: Reader) -> Value | None:
+    """Lamps had no space, and then one that was arbitrary."""
+    node = use.node
+    if compat.CYCLES >= 5 or "OBJECT" not in {node.convert_from, node.convert_to}:
+        return None
+    if compat.CYCLES == 4:
+        use.note("takes an arbitrary space for a lamp's in Cycles of this Blender; its own is used instead")
+        return None
+    spaces = [space.lower().replace("object", "world") for space in (node.convert_from, node.convert_to)]
+    parameters = {"type": node.vector_type.lower(), "from": spaces[0], "to": spaces[1]}
+    return p("vector-transform", p.read(use, "Vector"), **parameters, version=compat.CYCLES)
+
+
 def _of_object(name: str) -> Callable[[NodeUse, Reader], Value | None]:
     """Since lamps are objects, what Object Info tells of them."""
 
@@ -155,6 +176,8 @@ OF_LAMPS: dict[tuple[str, str], Answer] = {
     ("TexCoord", "Camera"): _camera,
     ("TexCoord", "Window"): _window,
     ("TexCoord", "Reflection"): _reflection,
+    ("TexCoord", "Normal"): _normal,
+    ("VectorTransform", "Vector"): _transform,
     ("ObjectInfo", "Location"): _location,
     ("ObjectInfo", "Color"): _of_object("color"),
     ("ObjectInfo", "Alpha"): _of_object("alpha"),
