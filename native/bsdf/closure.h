@@ -67,6 +67,12 @@ inline Lobe roughLobe(int version, LobeKind kind, Rgb weight, float ax, float ay
   return l;
 }
 
+inline Lobe refractionLobe(int version, LobeKind kind, Rgb weight, float alpha, float eta) {
+  Lobe l = roughLobe(version, kind, weight, alpha, alpha);
+  l.eta = eta, l.unseenFacets = true;
+  return l;
+}
+
 // Diffuse: color alone is what decides over the light reflected more than once; weight contains it, too.
 template <class Add>
 inline void addDiffuse(int version, Rgb weight, Rgb color, float roughness, float cosThetaO, Add&& add,
@@ -118,12 +124,13 @@ struct GlassLook {
   Masking masking = Masking::kCorrelated;
   Fresnel fresnel = Fresnel::kBlended;
   Rgb f0, reflectionTint, transmissionTint;
+  bool unseenFacets = true;  // not where Cycles follows light from facet to facet
 };
 template <class Add>
 inline void addGlassLobe(int version, const GlassLook& look, Rgb weight, float alpha, float eta, Add&& add) {
   Lobe l = roughLobe(version, look.kind, weight * look.reflectionTint, alpha, alpha);
   l.masking = look.masking, l.fresnel = look.fresnel, l.f0 = look.f0, l.eta = eta;
-  l.through = weight * look.transmissionTint;
+  l.through = weight * look.transmissionTint, l.unseenFacets = look.unseenFacets;
   addLobe(version, l, add);
 }
 
@@ -134,7 +141,7 @@ inline void addGlass(int version, Glossy distribution, Rgb weight, Rgb color, fl
   GlassLook look{.f0 = gray(fresnelNormal(eta)), .reflectionTint = color, .transmissionTint = color};
   if (distribution == Glossy::kBeckmann) look.kind = LobeKind::kBeckmannGlass;
   if (distribution == Glossy::kMultiGgx) {
-    if (version == 3) look.fresnel = Fresnel::kDielectric;
+    if (version == 3) look.fresnel = Fresnel::kDielectric, look.unseenFacets = false;
     const float roughness = std::sqrt(alpha);
     weight *= compensate(glassAlbedo(roughness, cosThetaO, eta), clampedTo1(color)).factor();
   } else if (version == 3) {  // Fresnel of the mean surface, and of its facets total internal reflection alone
@@ -147,11 +154,11 @@ inline void addGlass(int version, Glossy distribution, Rgb weight, Rgb color, fl
 
 template <class Add>
 inline void addRefraction(int version, Glossy distribution, Rgb weight, float alpha, float eta, Add&& add) {
-  Lobe l =
-      roughLobe(version, distribution == Glossy::kBeckmann ? LobeKind::kBeckmannRefraction : LobeKind::kGgxRefraction,
-                weight, alpha, alpha);
-  l.eta = eta;
-  addLobe(version, l, add);
+  const bool beckmann = distribution == Glossy::kBeckmann;
+  addLobe(
+      version,
+      refractionLobe(version, beckmann ? LobeKind::kBeckmannRefraction : LobeKind::kGgxRefraction, weight, alpha, eta),
+      add);
 }
 
 // Velvet (3.4, and the Ashikhmin sheen since), sigma in [0, 1].

@@ -81,17 +81,32 @@ inline bool refracts(Vec3<T> wi, Vec3<T> wo, Vec3<T> h) {
 template <class T>
 inline T refractionJacobian(Vec3<T> wi, Vec3<T> wo, Vec3<T> h, T eta) {
   const T l2 = dot(h, h);
-  return eta * eta * (-dot(wi, h) / l2) * (dot(wo, h) / l2);
+  return eta * eta * std::abs(dot(wi, h) / l2) * (dot(wo, h) / l2);
 }
+
+namespace detail {
+template <Distribution K, class T>
+inline MicrofacetValue<T> refractionValue(Masking masking, Vec3<T> wi, Vec3<T> wo, Vec3<T> h, T ax, T ay, T eta) {
+  const T d = normalDensity<K>(h, T(1) / ax, T(1) / ay) * refractionJacobian(wi, wo, h, eta);
+  const T si = masked<K>(wi, ax, ay), so = masked<K>(wo, ax, ay);
+  return {d * maskingOver(masking, -wi.z, si, wo.z, so), d / (wo.z + maskedExactly<K>(wo, ax, ay))};
+}
+}  // namespace detail
 
 // f_s cos and pdf of refraction with transmittance 1 of each facet (eq. 21), zero where no facet refracts so.
 template <Distribution K, class T>
 inline MicrofacetValue<T> refractionEvaluate(Masking masking, Vec3<T> wi, Vec3<T> wo, T ax, T ay, T eta) {
   const Vec3<T> h = refractionHalf(wi, wo, eta);
-  if (!refracts(wi, wo, h)) return {T(0), T(0)};
-  const T d = normalDensity<K>(h, T(1) / ax, T(1) / ay) * refractionJacobian(wi, wo, h, eta);
-  const T si = masked<K>(wi, ax, ay), so = masked<K>(wo, ax, ay);
-  return {d * maskingOver(masking, -wi.z, si, wo.z, so), d / (wo.z + maskedExactly<K>(wo, ax, ay))};
+  return refracts(wi, wo, h) ? detail::refractionValue<K>(masking, wi, wo, h, ax, ay, eta) : MicrofacetValue<T>{};
+}
+
+// The formulas' value where none does, since it would have to face down, or to have both directions on one side: zero
+// where one does. Cycles takes it for f_s cos and pdf, although its own samples never go there.
+template <Distribution K, class T>
+inline MicrofacetValue<T> unseenRefraction(Masking masking, Vec3<T> wi, Vec3<T> wo, T ax, T ay, T eta) {
+  const Vec3<T> h = refractionHalf(wi, wo, eta);
+  if (!(wi.z < T(0)) || !(wo.z > T(0)) || h.z == T(0) || refracts(wi, wo, h)) return {};
+  return detail::refractionValue<K>(masking, wi, wo, h, ax, ay, eta);
 }
 
 template <Distribution K, class T>

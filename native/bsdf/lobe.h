@@ -4,6 +4,7 @@
 //   evaluate(lobe, wi, wo)   f cos(theta_i) with the lobe's weight and colour, and the density of sample()
 //   sample(lobe, wo, u, v)   a direction; where evaluate() is zero there, its contribution is zero, and it counts.
 //                            v: of glass alone, chooses between what a facet reflects and what it lets pass
+//   unseen(lobe, wi, wo)     what Cycles' light samples alone find besides
 //   logPdf(lobe, wi, wo)     ln of the density, also where that underflows
 //   weight(lobe, wi, wo)     f cos / pdf at a sampled direction, without cancellation
 //   isDelta(kind)            one direction alone: evaluate() is zero, weight() is f cos / pdf as ever
@@ -62,7 +63,8 @@ struct Lobe {
   LobeKind kind = LobeKind::kLambert;
   Fresnel fresnel = Fresnel::kNone;
   Masking masking = Masking::kCorrelated;
-  uint8_t frame = 0;  // which normal and tangent, for whoever has several
+  uint8_t frame = 0;          // which normal and tangent, for whoever has several
+  bool unseenFacets = false;  // has what unseen() tells
   Rgb weight{1, 1, 1}, through{1, 1, 1};
   float ax = 1, ay = 1;
   float eta = 1;  // of the side below over that above
@@ -305,6 +307,22 @@ LobeValue<T> evaluate(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
     default:
       return {};
   }
+}
+
+// What Cycles adds to a lobe that refracts where no facet does: f cos, which its light samples alone find, and the
+// density that it counts for it. Lamps that graze rough glass are brighter for it.
+template <class T>
+LobeValue<T> unseen(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
+  using namespace detail;
+  if (!l.unseenFacets) return {};
+  const bool ggx = l.kind == LobeKind::kGgxRefraction || l.kind == LobeKind::kGgxGlass;
+  const T ax = T(l.ax), ay = T(l.ay), eta = T(l.eta);
+  const MicrofacetValue<T> v = ggx ? unseenRefraction<Distribution::kGgx>(l.masking, wi, wo, ax, ay, eta)
+                                   : unseenRefraction<Distribution::kBeckmann>(l.masking, wi, wo, ax, ay, eta);
+  if (!(v.fCos > T(0))) return {};
+  if (!isGlass(l.kind)) return colored(refractedColor(l, wi, wo), v);
+  const GlassFacet<T> f = glassFacet(l, wi, wo);
+  return {f.passed * v.fCos, v.pdf * (T(1) - f.reflect)};
 }
 
 template <class T>

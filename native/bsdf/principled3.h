@@ -51,8 +51,11 @@ inline void addGlass3(const Principled3& p, Rgb weight, float cosThetaO, Add&& a
   const Rgb tint = p.baseColor * p.specularTint + gray(1 - p.specularTint);
   if (p.multiscatter && p.roughness > kLeastCompensated3) {
     const Rgb base = clampedTo1(p.baseColor);
-    const GlassLook look{
-        .fresnel = Fresnel::kTinted, .f0 = clampedTo1(tint), .reflectionTint = gray(1), .transmissionTint = base};
+    const GlassLook look{.fresnel = Fresnel::kTinted,
+                         .f0 = clampedTo1(tint),
+                         .reflectionTint = gray(1),
+                         .transmissionTint = base,
+                         .unseenFacets = false};
     addGlassLobe(3, look, weight * compensate(glassAlbedo(p.roughness, cosThetaO, eta), base).factor(), alpha, eta,
                  add);
     return;
@@ -62,10 +65,10 @@ inline void addGlass3(const Principled3& p, Rgb weight, float cosThetaO, Add&& a
   l.fresnel = Fresnel::kBlended, l.f0 = tint, l.eta = eta;
   addLobe(3, l, add);
   const float through = p.multiscatter ? p.roughness : 1 - (1 - p.roughness) * (1 - p.transmissionRoughness);
-  l = roughLobe(3, LobeKind::kGgxRefraction, weight * p.baseColor * std::max(1e-4f, 1 - f), through * through,
-                through * through);
-  l.eta = eta;
-  addLobe(3, l, add);
+  addLobe(3,
+          refractionLobe(3, LobeKind::kGgxRefraction, weight * p.baseColor * std::max(1e-4f, 1 - f), through * through,
+                         eta),
+          add);
 }
 
 }  // namespace detail

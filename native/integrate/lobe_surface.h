@@ -16,7 +16,8 @@
 namespace wardmis {
 
 // f cos of what samples of lights bring, by technique, where it is not what samples of the surface bring, as in Cycles:
-// of lobes to whose normal light leaves on the same side as to the face, and on the other.
+// of lobes to whose normal light leaves on the same side as to the face, and on the other. Among
+// them what unseen() of lobe.h tells.
 template <size_t K>
 struct LitOtherwise {
   std::array<Rgb, K - 1> same{}, other{};
@@ -171,21 +172,24 @@ class LobeSurface {
       const Vec3<T> w = local(l, wi);
       const bool above = w.z > T(0);
       if (!(above ? wardmis::reflects(l.kind) : w.z < T(0) && wardmis::transmits(l.kind))) continue;
-      const LobeValue<T> v = wardmis::evaluate(l, w, local(l, wo));
+      LobeValue<T> v = wardmis::evaluate(l, w, local(l, wo));
+      const bool seen = v.pdf > T(0);
+      if (!seen) v = unseen(l, w, local(l, wo));
       if (!(v.pdf > T(0))) continue;
       const Rgb value{static_cast<float>(v.fCos.x), static_cast<float>(v.fCos.y), static_cast<float>(v.fCos.z)};
       const BumpShadow left = bump_[l.frame] == 0
                                   ? BumpShadow{1, 1}
                                   : bumpShadow(bump_[l.frame], hasSoftTerminator(l.kind), static_cast<float>(wi.z),
                                                ownCosine_[l.frame], static_cast<float>(w.z));
-      if (above == ahead) f[slot_[i]] += value * left.bySurface;
+      const bool sampled = seen && above == ahead;
+      if (sampled) f[slot_[i]] += value * left.bySurface;
       if (slot_[i] != kCosine) {
         const float density = share_[i] * static_cast<float>(v.pdf);
-        if (above == ahead) p[slot_[i]] += density;
+        if (sampled) p[slot_[i]] += density;
         lit.density += strength_[slot_[i]] * density;
       }
       (above == ahead ? lit.same : lit.other)[slot_[i]] += value * left.byLight;
-      lit.any = lit.any || left.byLight != (above == ahead ? left.bySurface : 0);
+      lit.any = lit.any || left.byLight != (sampled ? left.bySurface : 0);
     }
     if (lit.any) lit.density /= strength();
   }

@@ -8,6 +8,8 @@ from typing import Any
 import bpy
 from stage import add, ball, camera, diffuse, floor, lamp, material, mesh, scene, sky, square
 
+from scenes.worlds import image_sky
+
 KINDS: dict[str, dict[str, Any]] = {
     "Refraction": {"IOR": 1.2, "Roughness": 0.0},
     "Glass": {"IOR": 1.3, "Roughness": 0.3},
@@ -117,3 +119,46 @@ def sky_not_by_what_is_diffuse():
 def sky_not_by_what_is_refracted():
     panes("Refraction", 2)
     bpy.context.scene.world.cycles_visibility.transmission = False
+
+
+def rough_panes(kind: str) -> None:
+    """In front of a lamp that shines along them from behind, where Cycles has light that no facet refracts so."""
+    new = kind == "Glass" and bpy.app.version >= (4, 0)  # Beckmann's would be the same
+    for i, distribution in enumerate(("GGX", "MULTI_GGX" if new else "BECKMANN")):
+        for k, (ior, turned) in enumerate(((1.45, 1), (0.8, 1), (1.45, -1))):
+            made, tree, output = material(kind)
+            settings = {"distribution": distribution}
+            shader = add(tree, f"Bsdf{kind}", settings, IOR=ior, Roughness=0.6, Color=(1, 0.8, 0.6, 1))
+            tree.links.new(shader.outputs[0], output.inputs["Surface"])
+            pane = mesh("Pane", *square(0.45), made)
+            pane.location, pane.rotation_euler = (k - 1, 0, 0.6 + i), (turned * math.pi / 2, 0, 0)
+    lamp("AREA", (0, 1, 4), 200, target=(0, 0, 1), size=1)
+    sky((0, 0, 0))
+    camera((0.3, -4, 1.6), (0, 0, 1.1))
+
+
+@scene
+def rough_glass_beside_lamp():
+    rough_panes("Glass")
+
+
+@scene
+def rough_refraction_beside_lamp():
+    rough_panes("Refraction")
+
+
+def rough_panes_under_sky() -> None:
+    for i, (ior, roughness) in enumerate(((1.45, 0.3), (0.8, 0.6), (1.45, 1))):
+        made, tree, output = material()
+        settings = {"distribution": "GGX"}
+        shader = add(tree, "BsdfRefraction", settings, IOR=ior, Roughness=roughness)
+        tree.links.new(shader.outputs[0], output.inputs["Surface"])
+        pane = mesh("Pane", *square(0.45), made)
+        pane.location, pane.rotation_euler = (i - 1, 0, 1), (math.pi / 2, 0, 1.2)
+    camera((0.3, -4, 1.6), (0, 0, 1.1))
+
+
+@scene
+def rough_refraction_under_sky():
+    """A sky that is sampled, and the panes at grazing angles."""
+    image_sky(64, rough_panes_under_sky, Rotation=(0.4, -0.3, 1.1))

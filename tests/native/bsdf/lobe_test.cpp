@@ -184,6 +184,61 @@ TEST(Glass, IsItsTwoLobes) {
   EXPECT_GT(pairs, 3000);
 }
 
+// Walter's formula with the half vector as it comes out, where no facet refracts so; nothing where one does.
+TEST(Lobe, UnseenIsTheFormulaWhereNoFacetRefracts) {
+  Random random(8);
+  for (Lobe l : roughLobes()) {
+    if (!isGlass(l.kind) && l.kind != LobeKind::kGgxRefraction && l.kind != LobeKind::kBeckmannRefraction) continue;
+    SCOPED_TRACE(testing::PrintToString(l));
+    const bool ggx = l.kind == LobeKind::kGgxRefraction || l.kind == LobeKind::kGgxGlass;
+    const double alpha = l.ax, a2 = alpha * alpha, eta = l.eta;
+    l.ay = l.ax;
+    Lobe closed = l;
+    l.unseenFacets = true;
+    int found = 0;
+    double grazing = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const Vec wo = random.above(), wi = -random.above();
+      EXPECT_EQ(unseen(closed, wi, wo).fCos.x, 0);
+      const LobeValue<double> v = unseen(l, wi, wo);
+      Vec h = -(wi * eta + wo);
+      const double l2 = dot(h, h);
+      h = h / std::sqrt(l2);
+      if (dot(h, wo) < 0) h = -h;
+      if (h.z > 0 && dot(h, wi) < 0) {
+        EXPECT_EQ(v.fCos.x, 0);
+        EXPECT_EQ(v.pdf, 0);
+        continue;
+      }
+      const auto lambda = [&](Vec w) {
+        const double t = alpha * std::sqrt(1 - w.z * w.z) / std::abs(w.z), a = 1 / t;
+        if (ggx) return (std::sqrt(1 + t * t) - 1) / 2;
+        return a < 1.6 ? (1 - 1.259 * a + 0.396 * a * a) / (3.535 * a + 2.181 * a * a) : 0;
+      };
+      const double c2 = h.z * h.z, cosine = dot(h, wo), o = lambda(wo), in = lambda(wi),
+                   d = ggx ? a2 / (kPi<double> * std::pow(1 - c2 + a2 * c2, 2))
+                           : std::exp((1 - 1 / c2) / a2) / (kPi<double> * a2 * c2 * c2),
+                   g = l.masking == Masking::kSeparable ? 1 / ((1 + o) * (1 + in)) : 1 / (1 + o + in);
+      const Rgb color = isGlass(l.kind) ? l.through : l.weight;
+      const double expected =
+          color.y * transmittance(l, cosine).y * d * g * eta * eta / l2 * cosine * std::abs(dot(h, wi)) / wo.z;
+      EXPECT_NEAR(v.fCos.y, expected, 1e-5 * expected + 1e-200);
+      if (expected > 1e-200) {
+        EXPECT_GT(v.pdf, 0);
+      }
+      EXPECT_EQ(evaluate(l, wi, wo).fCos.y, 0);
+      EXPECT_EQ(unseen(l, -wi, wo).fCos.y, 0);
+      EXPECT_EQ(unseen(l, wi, -wo).fCos.y, 0);
+      grazing = std::max(grazing, v.fCos.y);
+      ++found;
+    }
+    EXPECT_GT(found, 100);
+    if (ggx) {
+      EXPECT_GT(grazing, 1e-3);
+    }
+  }
+}
+
 // Snell, Fresnel and the sum of both halves of sharp glass.
 TEST(Delta, GlassReflectsOrRefracts) {
   Random random(6);

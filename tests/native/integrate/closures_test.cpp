@@ -316,6 +316,34 @@ TEST(Closures, WhatTransmissionSeesIsItsOwn) {
   EXPECT_EQ(meanOf(scene, settings()), all);
 }
 
+// A sun that shines along rough refraction from behind, where no facet refracts so: Cycles' value, unseen(); of a small
+// lamp in that direction nearly all of it.
+TEST(Closures, LampsThatGrazeRoughGlassAreSeen) {
+  const Vec3f away = normalize(Vec3f{-0.9f, 0.3f, -0.15f}), across = normalize(Vec3f{0.3f, 0.9f, 0});
+  Scene scene;
+  scene.materials = {material({with(rough(closure(ClosureType::kRefraction), 0.4f, Glossy::kGgx), 1, 1.45f)})};
+  addPlane(scene, 1000, 0);
+  lookFrom(scene, 0.5f, 0.005f, 4);
+  Light light;
+  light.type = LightType::kSun;
+  light.emitted = {1, 1, 1};
+  light.toWorld = {across, cross(away, across), away, {0, 0, 0}};
+  scene.lights = {light};
+  const Lobe lobe = refractionLobe(4, LobeKind::kGgxRefraction, kWhite, 0.4f, 1.45f);
+  const Vec3<double> wo{std::sin(0.5), 0, std::cos(0.5)}, wi{away.x, away.y, away.z};
+  const double expected = unseen(lobe, wi, wo).fCos.y;
+  EXPECT_GT(expected, 0.005);
+  EXPECT_EQ(evaluate(lobe, wi, wo).fCos.y, 0);
+  EXPECT_NEAR(meanOf(scene, settings()) / expected, 1, 2e-3);
+
+  scene.lights[0].type = LightType::kArea, scene.lights[0].emitted = {2500, 2500, 2500};
+  scene.lights[0].sizeX = scene.lights[0].sizeY = 0.02f, scene.lights[0].toWorld.t = away;
+  const double lamp = meanOf(scene, settings(Allocation::kEqual));
+  EXPECT_NEAR(lamp / expected, 1, 0.02);
+  for (Allocation a : {Allocation::kSecondMoment, Allocation::kVariance, Allocation::kAuto})
+    EXPECT_NEAR(meanOf(scene, settings(a)) / lamp, 1, 0.01) << name(a);
+}
+
 // A technique that is called by a class of lobes is that class's on every surface, whatever other lobes are there.
 TEST(Closures, TechniquesAreThoseOfTheirClass) {
   Scene scene = ball({rough(closure(ClosureType::kGlass), 0.2f)});
