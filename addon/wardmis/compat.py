@@ -173,6 +173,9 @@ def undeformed_positions(mesh: Any) -> np.ndarray:
 RADIUS_OF_CURVES = 0.005 if VERSION >= (4, 0, 0) else 0.0
 RADIUS_OF_POINTS = 0.01 if VERSION >= (4, 0, 0) else 0.0
 
+# Whether rays that begin inside a tube or a sphere meet it: since Cycles has the fourth version of Embree.
+INSIDE_IS_SEEN = VERSION >= (3, 6, 0)
+
 # Those of a point cloud that is placed once are as round as before under a scale that is not even.
 SPHERES_STAY_ROUND = VERSION < (5, 0, 0)
 

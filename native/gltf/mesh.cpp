@@ -255,8 +255,10 @@ Primitive Meshes::strands(const Json& primitive, Form form, const Json& position
   buffers_.budget.charge(count * (2 * sizeof(uint32_t) + (lines ? 5 : 2) * 4 * sizeof(float)), place);
   Primitive out;
   out.form = form;
-  if (const auto extension = primitive.extension("WARDMIS_scene"))
+  if (const auto extension = primitive.extension("WARDMIS_scene")) {
     out.pieces = static_cast<int>(extension->integerOr("pieces", 5, 1, 16));
+    out.inside = extension->booleanOr("inside", false);
+  }
   std::vector<uint32_t> indices(count);
   for (size_t i = 0; i < count; i++) {
     const uint32_t k = file[lines ? 2 * i : i];

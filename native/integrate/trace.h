@@ -79,6 +79,20 @@ Hit trace(const RenderScene& world, Ray& ray, uint32_t key, Rgb& weight, Along&&
   }
 }
 
+namespace detail {
+
+// What a shadow ray has left behind a curve, and what of its path. As Cycles has it: colours as their mean, and the far
+// side of a tube whose inside is seen counts as one more of the same.
+inline Rgb throughCurve(const Strands& strands, Rgb transparent, PathState& path) {
+  const float mean = std::clamp((transparent.x + transparent.y + transparent.z) / 3, 0.0f, 1.0f);
+  const bool twice = strands.form != Form::kRibbons && strands.inside;
+  if (twice) path = path.passed();
+  const float left = twice ? mean * mean : mean;
+  return {left, left, left};
+}
+
+}  // namespace detail
+
 // What arrives of light at the end of a shadow ray.
 template <uint32_t N, size_t K>
 Rgb transmittance(const RenderScene& world, Ray ray) {
@@ -91,7 +105,9 @@ Rgb transmittance(const RenderScene& world, Ray ray) {
     if (!hit.valid()) return left;
     if (!detail::mayPass(world, ray, hit, world.mostTransparent)) return kNone;
     const auto x = interact<N, K>(world.scene, world.geometry, ray, hit);
-    left *= x.surface.transparent;
+    const Shape& shape = world.geometry.shapes[hit.shape];
+    left *=
+        isCurve(shape) ? detail::throughCurve(*shape.strands, x.surface.transparent, ray.path) : x.surface.transparent;
     if (!(maxComponent(left) > 0)) return kNone;
     ray.tMin = detail::behind(x, ray.direction, hit.t);
     ray.left = x.primitive;

@@ -72,10 +72,11 @@ struct AttributeValue {
 };
 
 struct ShadingContext {
-  Varying position;            // steps: two of a pixel's size, orthogonal to each other and to trueNormal
-  Vec3f normal, trueNormal;    // unit, towards the viewer
-  Vec3f incoming;              // unit, to the viewer
-  bool backfacing = false;     // the triangle is
+  Varying position;          // steps: two of a pixel's size, orthogonal to each other and to trueNormal
+  Vec3f normal, trueNormal;  // unit, towards the viewer
+  Vec3f incoming;            // unit, to the viewer
+  bool backfacing = false;   // the triangle is
+  bool onCurve = false;
   Varying parametric{};        // (1 - u - v, u, 0)
   Vec3f interpolatedNormal{};  // of the corners, in object space, neither turned to the viewer nor of unit length
   float materialIndex = 0;

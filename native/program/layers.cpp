@@ -15,9 +15,9 @@ Rgb belowLayers(const ShadingContext& c, Principled layers, Vec3f normal, Vec3f 
     return l > 0 && std::isfinite(d) ? std::clamp(d, -1.0f, 1.0f) : dot(c.incoming, c.normal);
   };
   const float share = std::clamp(layers.coatWeight, 0.0f, 1.0f);
-  return expand(layers, {1, 1, 1}, cosine(normal),
-                cosine(surface::visiblyReflecting(4, c.trueNormal, c.incoming, coatNormal)),
-                cosine(normal * (1 - share) + coatNormal * share), [](const Lobe&) {});
+  const Vec3f coat = c.onCurve ? coatNormal : surface::visiblyReflecting(4, c.trueNormal, c.incoming, coatNormal);
+  return expand(layers, {1, 1, 1}, cosine(normal), cosine(coat), cosine(normal * (1 - share) + coatNormal * share),
+                [](const Lobe&) {});
 }
 
 }  // namespace wardmis

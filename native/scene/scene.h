@@ -77,7 +77,8 @@ struct Primitive {
   // being the other (those that follow on one another are of one curve); of each sphere its centre.
   Array<uint32_t> indices;
   Form form = Form::kTriangles;
-  int pieces = 5;  // ribbons: flat ones that make a segment
+  int pieces = 5;       // ribbons: flat ones that make a segment
+  bool inside = false;  // what is round: rays see it from inside, too
 };
 
 // What programs read of the vertices: `components` numbers each; 0: there is nothing of the name. UVs: v = 0 at the

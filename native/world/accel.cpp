@@ -144,7 +144,7 @@ struct Accel::Impl {
     }
   }
 
-  // Rejects, besides, what the ray leaves, and the inside of curves and spheres, as Cycles has them.
+  // Rejects, besides, what the ray leaves, and the inside of curves and spheres where it is not seen.
   static void filterStrands(const RTCFilterFunctionNArguments* args) {
     const auto* impl = static_cast<const Impl*>(args->geometryUserPtr);
     const Ray& ray = *static_cast<const Query*>(args->context)->ray;
@@ -160,7 +160,8 @@ struct Accel::Impl {
                          RTCHitN_Ng_y(args->hit, args->N, i) * RTCRayN_dir_y(args->ray, args->N, i) +
                          RTCHitN_Ng_z(args->hit, args->N, i) * RTCRayN_dir_z(args->ray, args->N, i);
       const bool seen = impl->visibility.empty() || (impl->visibility[top.placement] & ray.kind) != 0;
-      if (!seen || met == ray.left || (strands.form != Form::kRibbons && away > 0)) args->valid[i] = 0;
+      const bool solid = strands.form != Form::kRibbons && !strands.inside;
+      if (!seen || met == ray.left || (solid && away > 0)) args->valid[i] = 0;
     }
   }
 

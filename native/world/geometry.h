@@ -29,6 +29,7 @@ struct Shape {
   const Strands* strands = nullptr;
   const Primitive* primitive = nullptr;
 };
+inline bool isCurve(const Shape& s) { return s.strands != nullptr && s.strands->form != Form::kSpheres; }
 
 using Corners = std::array<Vec3f, 3>;
 Corners movedCorners(const Shape& s, const uint32_t* i, float time);

@@ -175,6 +175,7 @@ void fill(const Scene& scene, const ShadedPoint& p, const Program& program, Shad
   c.trueNormal = frame(p.geometric);
   c.incoming = frame(p.wo);
   c.backfacing = p.turned != (!strand && p.placement.toWorld.determinant() < 0);
+  c.onCurve = isCurve(p.shape);
   c.materialIndex = scene.materials[static_cast<size_t>(p.shape.material)].index;
 
   Linear at{p.u, strand ? 0 : p.v, 0, 0, 0, 0};  // along a curve from one end of its segment to the other

@@ -30,7 +30,7 @@ Vec3f unitOr(Vec3f v, Vec3f otherwise) {
 }  // namespace
 
 Strands::Strands(const MeshPart& part, const Primitive& primitive, const Affine* transform)
-    : form(primitive.form), pieces(primitive.pieces) {
+    : form(primitive.form), pieces(primitive.pieces), inside(primitive.inside) {
   const float scale = transform != nullptr ? std::cbrt(std::abs(transform->determinant())) : 1;
   const auto add = [&](uint32_t i) {
     const Vec3f p = part.positions[i];

@@ -23,6 +23,7 @@ struct alignas(16) ControlPoint {
 struct Strands {
   Form form;
   int pieces;
+  bool inside;                       // is seen, of what is round
   std::vector<ControlPoint> points;  // in world space if the placement is flat; ends of splines stand twice
   std::vector<uint32_t> first;   // of each segment the first point that shapes it: of 4, of 2 (cones), of 1 (spheres)
   std::vector<uint32_t> strand;  // of each segment the curve that it is of; spheres: empty, each is its own

@@ -299,6 +299,7 @@ class _Encoder:
             attributes["_RADIUS"] = self._accessor(mesh.radii)
             more["mode"] = POINTS if mesh.shape == "spheres" else LINES
             extension |= {"shape": mesh.shape} | ({"pieces": mesh.pieces} if mesh.shape == "ribbons" else {})
+            extension |= {"inside": True} if mesh.inside else {}
         if extension:
             more["extensions"] = {EXTENSION: extension}
         primitives = [

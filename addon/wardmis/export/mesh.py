@@ -38,6 +38,7 @@ class Geometry:
     radii: np.ndarray | None = None
     shape: str = ""
     pieces: int = 5
+    inside: bool = False
 
 
 @dataclass(frozen=True)
@@ -153,6 +154,7 @@ def assemble(name: str, geometry: Geometry, materials: tuple[int, ...]) -> MeshD
         radii=geometry.radii,
         shape=geometry.shape,
         pieces=geometry.pieces,
+        inside=geometry.inside,
     )
 
 

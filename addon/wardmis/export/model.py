@@ -189,6 +189,7 @@ class MeshData:
     radii: np.ndarray | None = None  # (n,) float32
     shape: str = ""  # of what has radii: "ribbons", "tubes", "cones", "spheres"
     pieces: int = 5  # flat ones of a ribbon's segment
+    inside: bool = False  # whether what is round is seen from inside, too
 
 
 @dataclass

@@ -171,7 +171,7 @@ def gather_points(cloud: Any, wanted: Wanted, context: ExportContext) -> Geometr
     if radii is None:
         radii = np.full(len(positions), compat.RADIUS_OF_POINTS, np.float32)
     geometry = Geometry(positions, None, None, np.arange(len(positions), dtype=np.uint32), None)
-    geometry.radii, geometry.shape = np.maximum(radii, 0), "spheres"
+    geometry.radii, geometry.shape, geometry.inside = np.maximum(radii, 0), "spheres", compat.INSIDE_IS_SEEN
     for attribute in cloud.attributes:
         if attribute.name in wanted.attributes and attribute.data_type in TYPES:
             geometry.attributes[attribute.name] = compat.attribute_values(attribute, *TYPES[attribute.data_type])
@@ -196,6 +196,7 @@ def _curves(
     geometry = Geometry(positions, None, None, segments, None if slots is None else slots[curve_of_point[first]])
     geometry.radii = np.maximum(radii, 0)
     geometry.shape, geometry.pieces = settings
+    geometry.inside = geometry.shape != "ribbons" and compat.INSIDE_IS_SEEN
     return geometry
 
 

@@ -150,6 +150,7 @@ inline GlbBuilder withStrands() {
     primitives.push_back(p);
   }
   primitives[0]["extensions"]["WARDMIS_scene"]["pieces"] = 3;
+  primitives[1]["extensions"]["WARDMIS_scene"]["inside"] = true;
   b.add("meshes", {{"name", "Hair"}, {"primitives", primitives}});
   b.add("nodes", {{"name", "Fur"}, {"mesh", 0}});
   return b;

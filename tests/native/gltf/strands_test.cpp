@@ -28,6 +28,8 @@ TEST(GlbStrands, ReadsCurvesAndSpheres) {
   EXPECT_EQ(indicesOf(part.primitives[0]), (std::vector<uint32_t>{0, 1, 3}));
   EXPECT_EQ(part.primitives[1].form, Form::kTubes);
   EXPECT_EQ(part.primitives[1].pieces, 5);
+  EXPECT_TRUE(part.primitives[1].inside);
+  EXPECT_FALSE(part.primitives[2].inside);
   EXPECT_EQ(part.primitives[2].form, Form::kCones);
   EXPECT_EQ(part.primitives[3].form, Form::kSpheres);
   EXPECT_EQ(indicesOf(part.primitives[3]), (std::vector<uint32_t>{0, 1, 2, 3, 4}));  // none: all of them
@@ -54,6 +56,7 @@ TEST(GlbStrands, RefusesWhatIsNone) {
   refused([&](GlbBuilder& b) { primitive(b, 1)["mode"] = 4; }, "which is for lines (mode 1) and points (mode 0)");
   refused([&](GlbBuilder& b) { shape(b, 0)["pieces"] = 17; }, "pieces");
   refused([&](GlbBuilder& b) { shape(b, 0)["pieces"] = 0; }, "pieces");
+  refused([&](GlbBuilder& b) { shape(b, 1)["inside"] = 1; }, "inside");
   refused([&](GlbBuilder& b) { primitive(b, 0)["attributes"].erase("_RADIUS"); }, "has no _RADIUS");
   const auto radii = [&](std::vector<float> r) {
     return [r](GlbBuilder& b) { primitive(b, 2)["attributes"]["_RADIUS"] = b.accessor<float>(r, 1); };

@@ -131,6 +131,31 @@ TEST_P(Placed, LeavesItsOwnAndMeetsOthers) {
   EXPECT_NEAR(accel.intersect(ray({1, 2, 3}, {0, 0, -1})).t, 3.8f, 1e-4f);
 }
 
+// What begins inside meets the far side, seen from behind, where the scene says so.
+TEST_P(Placed, TheirInsideIsSeenWhereItIsSaid) {
+  for (const Form form : {Form::kTubes, Form::kCones, Form::kSpheres})
+    for (const bool inside : {false, true}) {
+      Scene scene = form == Form::kSpheres ? sceneOf(form, {{0, 0, 0}}, {0.1f}, {0}) : straight(form);
+      scene.meshes[0].parts[0].primitives[0].inside = inside;
+      scene = placed(scene);
+      const Geometry geometry(scene);
+      const Accel accel(geometry, 1);
+      Ray r = ray({1, 2, 3}, {0, 1, 1});
+      const Hit hit = accel.intersect(r);
+      ASSERT_EQ(hit.valid(), inside);
+      r.tMax = 1, r.kind = kCastsShadow;
+      EXPECT_EQ(accel.occluded(r), inside);
+      if (!inside) continue;
+      EXPECT_NEAR(hit.t, 0.2f, 1e-4f);
+      const Shape& shape = geometry.shapes[hit.shape];
+      const StrandPoint on = strandPoint(geometry.placements[hit.placement], shape, r, hit);
+      expectNear(on.normal, -r.direction, 1e-3f);
+      EXPECT_TRUE(on.turned);
+      r.left = {hit.placement, hit.shape, shape.strands->strandOf(hit.triangle)};
+      EXPECT_FALSE(accel.occluded(r));
+    }
+}
+
 TEST_P(Placed, BoundsHoldWhatRaysMeet) {
   // a spline that swings out beyond its points, and is thicker between them
   const Scene scene =
