@@ -125,7 +125,7 @@ struct HitMoments {
 struct LightSplit {
   using PerComponent = std::array<Rgb, kComponents>;
   PerComponent direct{};
-  std::array<PerComponent, kMaxSamplesPerHit> share;  // of the light of each path that goes on
+  Scratch<PerComponent, kMaxSamplesPerHit> share;  // of the light of each path that goes on; 9 kB, not to be cleared
 
   void add(Component c, Rgb value) { direct[static_cast<size_t>(c)] += value; }
 };
@@ -346,7 +346,9 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     if (t == kLight) {
       LightSample& l = light[k];
       if (!(l.pdf > 0) || !(kGeneral || dot(x.geometric, l.direction) > 0)) continue;
-      if (!(maxComponent(total(f)) > 0) && !(lit.any && maxComponent(total(lit.same) + total(lit.other)) > 0)) continue;
+      if (!(maxComponent(total(f)) > 0) &&
+          !(kGeneral && lit.any && maxComponent(total(lit.same) + total(lit.other)) > 0))
+        continue;
       world.emitters.look(l, x.position, static_cast<int>(plan.vertex));
       if (!(l.pdf > 0) || isBlack(l.radiance)) continue;
       Ray shadow;
@@ -375,8 +377,8 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
         if constexpr (kGeneral) radiance *= left;
       }
       if (l.exclusive) {
-        Values each = seen(lit.any ? lit.same : f, l.visibility, ahead);
-        if (lit.any) [[unlikely]] {
+        Values each = seen(kGeneral && lit.any ? lit.same : f, l.visibility, ahead);
+        if (kGeneral && lit.any) [[unlikely]] {
           const Values more = seen(lit.other, l.visibility, !ahead);
           for (size_t i = 0; i < each.size(); ++i) each[i] += more[i];
         }
@@ -451,8 +453,8 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       if constexpr (kGeneral) w *= seenThrough;
       const Bounce bounce = !ahead ? kTransmissionBounce : diffuse ? kDiffuseBounce : kGlossyBounce;
       if (record != nullptr && record->light != nullptr && maxComponent(w) > 0) {
-        LightSplit::PerComponent& share = record->light->share[static_cast<size_t>(continuations.count)];
-        share.fill({0, 0, 0});
+        record->light->share.set(continuations.count, {});
+        LightSplit::PerComponent& share = record->light->share[continuations.count];
         const Rgb all = total(f);
         const auto part = [](float a, float b) { return b > 0 ? a / b : 0; };
         for (size_t i = 0; i < f.size(); ++i) {

@@ -105,7 +105,7 @@ Rgb cameraSample(const KernelInput<K>& in, const Ray& camera, uint32_t pixelKey,
   const Counts::PerTechnique before = counts.samples;
   std::optional<HitRecord<K>> record;
   std::optional<CandidateHit<K>> candidate;
-  LightSplit lightSplit;  // not std::optional, whose 9 kB compilers clear for each camera ray
+  LightSplit lightSplit;  // not std::optional, which compilers clear for each camera ray
   LightSplit* const split = light != nullptr ? &lightSplit : nullptr;
   const bool noted = pilot != nullptr && follows;
   if (noted || split != nullptr) {
@@ -127,7 +127,7 @@ Rgb cameraSample(const KernelInput<K>& in, const Ray& camera, uint32_t pixelKey,
       sum += value * seenThrough;
       counts.following[c.technique] += counts.allRays() - rays;
       if (split != nullptr) [[unlikely]]
-        addLight(light->indirect, split->share[static_cast<size_t>(k)], value * seenThrough * exposure);
+        addLight(light->indirect, split->share[k], value * seenThrough * exposure);
       if (record)
         record->add(plan.integrand == Integrand::kSplit ? c.technique : 0, std::abs(luminance(value)) / c.scale, c.p, n,
                     c.used, c.set);
