@@ -164,7 +164,8 @@ TEST_P(Placed, BoundsHoldWhatRaysMeet) {
   const Accel accel(geometry, 1);
   int met = 0;
   for (int k = 0; k < 4000; ++k) {
-    const float y = -3 + 10 * static_cast<float>(k % 63) / 63, x = -3 + 10 * static_cast<float>(k / 63) / 63;
+    const int column = k % 63, row = k / 63;
+    const float y = -3 + 10 * static_cast<float>(column) / 63, x = -3 + 10 * static_cast<float>(row) / 63;
     const Hit hit = accel.intersect(ray({x, y, 20}, {0, 0, -1}));
     if (!hit.valid()) continue;
     ++met;
