@@ -102,7 +102,7 @@ class Renderer:
         self.path = command[0]
         self._name = name
         self._files = _identities(self.path)
-        self._events: queue.SimpleQueue[dict[str, Any]] = queue.SimpleQueue()
+        self._events: queue.SimpleQueue[dict[str, Any] | None] = queue.SimpleQueue()  # None: it has ended
         self._tail: deque[str] = deque(maxlen=6)  # of what it said besides events
         self._error: dict[str, Any] | None = None
         try:
@@ -144,7 +144,7 @@ class Renderer:
             else:
                 self._events.put(event)
         self._process.wait()
-        self._events.put({"event": "ended"})  # who waits for an event need not wait any longer
+        self._events.put(None)  # who waits for an event need not wait any longer
 
     def _read_messages(self) -> None:
         assert self._process.stderr is not None
@@ -174,13 +174,13 @@ class Renderer:
             self._process.send_signal(signal.SIGINT)
 
     def events(self, wait_seconds: float) -> list[dict[str, Any]]:
-        """The events so far; waits for the first one up to `wait_seconds`."""
-        events = []
+        """The events so far; waits for the first one, or for the end, up to `wait_seconds`."""
+        events: list[dict[str, Any] | None] = []
         with contextlib.suppress(queue.Empty):
             events.append(self._events.get(timeout=wait_seconds))
             while True:
                 events.append(self._events.get_nowait())
-        return events
+        return [event for event in events if event is not None]
 
     def finish(self) -> list[dict[str, Any]]:
         """After the process has ended: its last events. Raises RendererError, with what it said, if it failed."""
