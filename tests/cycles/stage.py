@@ -138,16 +138,48 @@ def saved_image(name: str, pixels: Any, suffix: str = "png", depth: str = "8") -
     return bpy.data.images.load(str(path))
 
 
-def weighted(tree: Any, outputs: Iterable[tuple[str, str, float]]) -> Any:
-    """The sum of (node, output, weight): a colour to which many outputs contribute."""
+def weighted(tree: Any, outputs: Iterable[tuple[Any, str | int, float]]) -> Any:
+    """The sum of (node, output, weight): a colour to which many outputs contribute. A node is its kind, or that with settings."""
     total = None
     for node, name, weight in outputs:
-        part = add(tree, "VectorMath", {"operation": "MULTIPLY_ADD"}, Vector=add(tree, node).outputs[name])
+        made = add(tree, node) if isinstance(node, str) else add(tree, *node)
+        part = add(tree, "VectorMath", {"operation": "MULTIPLY_ADD"}, Vector=made.outputs[name])
         part.inputs[1].default_value, part.inputs[2].default_value = (weight,) * 3, (0.3,) * 3
         if total is not None:
             tree.links.new(total, part.inputs[2])
         total = part.outputs[0]
     return total
+
+
+COLOR, FACTOR, ALPHA = 0, 2, 3  # outputs of Attribute nodes: one changes its name between Blenders
+OF_LAYERS = (
+    ("frame_current", COLOR),
+    ("two", COLOR),
+    ("two", FACTOR),
+    ("two", ALPHA),
+    ("four", ALPHA),
+    ("none", ALPHA),
+)
+OF_OBJECTS = (
+    ("own", COLOR),
+    ('["own"]', FACTOR),
+    ("data", COLOR),
+    ("location", COLOR),
+    ("color", ALPHA),
+    *OF_LAYERS[1:],
+)
+
+
+def with_properties(*owners: Any) -> None:
+    """What Attribute nodes may ask for; an object's data have a property of their own."""
+    for owner in owners:
+        owner["own"], owner["two"], owner["four"] = 0.6, [0.5, 0.2], [0.1, 0.2, 0.3, 0.4]
+        if isinstance(owner, bpy.types.Object):
+            owner.data["data"], owner.color = 0.7, (0.2, 0.4, 0.6, 0.8)
+
+
+def attribute(of: str, name: str) -> tuple[str, dict[str, str]]:
+    return "Attribute", {"attribute_type": of, "attribute_name": name}
 
 
 # ---- things ---------------------------------------------------------------------------------------------------------

@@ -71,18 +71,19 @@ def generated(mesh: Any, positions: np.ndarray) -> tuple[tuple[float, ...], np.n
 
 
 def object_attributes(names: Iterable[str], owners: dict[str, Any]) -> tuple[tuple[str, tuple[float, ...]], ...]:
-    """Of these names those that `owners`, by how they begin, have: custom properties of the object or its data, or their own."""
-    found = []
-    for name in sorted(names):
-        prefix = next((p for p in OF_OBJECT if name.startswith(p)), None)
-        if prefix is None:
-            continue
-        for owner in owners[prefix]:
-            values = _property(owner, name[len(prefix) :])
-            if values is not None:
-                found.append((name, values))
-                break
-    return tuple(found)
+    """Of these names those that begin as OF_OBJECT, each with what `owners`, by how it begins, have."""
+    return tuple((name, object_attribute(name, owners)) for name in sorted(names) if name.startswith(OF_OBJECT))
+
+
+def object_attribute(name: str, owners: dict[str, Any]) -> tuple[float, float, float, float]:
+    """A colour, as Blender makes one of a custom property, or one of their own, of the first that has one; 0 where none has."""
+    prefix = next(p for p in OF_OBJECT if name.startswith(p))
+    for owner in owners[prefix]:
+        values = _property(owner, name[len(prefix) :])
+        if values is not None:
+            r, g, b = (*values * 3,)[:3] if len(values) == 1 else (*values, 0.0)[:3]
+            return r, g, b, values[3] if len(values) == 4 else 1.0
+    return 0.0, 0.0, 0.0, 0.0
 
 
 def _property(owner: Any, name: str) -> tuple[float, ...] | None:

@@ -44,6 +44,7 @@ class ExportContext:
         tell: Tell | None = None,
     ) -> None:
         self.frame = frame  # of the scene
+        self.layer: tuple[Any, ...] = ()  # what has the attributes of the view layer, the first that has one first
         self.images: list[ImageData] = []
         self.textures: list[TextureData] = []
         self.notes: list[str] = []

@@ -88,6 +88,7 @@ def _gather(
     context = ExportContext(WithinMemory(), cancelled, frame, tell)
     if film.transparent and getattr(getattr(scene, "cycles", None), "film_transparent_glass", False):
         context.note("the film's Transparent Glass is not supported: what is seen through glass stays opaque")
+    context.layer = (depsgraph.view_layer, depsgraph.scene, depsgraph.scene.world)
     motion = None
     if opening is not None and set_frame is not None:
         motion = Motion(opening, set_frame, depsgraph.scene, context)
@@ -133,9 +134,16 @@ def _random_of(obj: Any, instance: Any) -> float:
     return random_of(instance.random_id if instance.is_instance else None, obj.name)
 
 
+def _owners_of_attributes(obj: Any, instance: Any) -> dict[str, tuple[Any, ...]]:
+    """What has the attributes of the object and of what places it, by how their names begin."""
+    instancer = instance.parent if instance.is_instance and instance.parent is not None else obj
+    return {"object:": (obj, obj.data), "instancer:": (instancer, instancer.data)}
+
+
 def _lamp_object(obj: Any, instance: Any) -> LampObject:
     r, g, b, alpha = obj.color
-    return LampObject((r, g, b), alpha, float(obj.pass_index), _random_of(obj, instance))
+    owners = _owners_of_attributes(obj, instance)
+    return LampObject((r, g, b), alpha, float(obj.pass_index), _random_of(obj, instance), owners)
 
 
 def _is_gas_domain(obj: Any) -> bool:
@@ -287,9 +295,7 @@ class _Gatherer:
             if program.reads("object-random"):
                 data.random = _random_of(obj, instance)
             if any(name.startswith(OF_OBJECT) for name in program.attributes):
-                instancer = instance.parent if instance.is_instance and instance.parent is not None else obj
-                scene = (self.view_layer, self.scene, self.scene.world)
-                owners = {"object:": (obj, obj.data), "instancer:": (instancer, instancer.data), "layer:": scene}
+                owners = _owners_of_attributes(obj, instance) | {"layer:": self.context.layer}
                 named = object_attributes(program.attributes, owners)
                 data.attributes = tuple(sorted({*data.attributes, *named}))
 

@@ -5,10 +5,14 @@ import math
 
 import bpy
 from stage import (
+    ALPHA,
     BLUE,
     GREEN,
+    OF_LAYERS,
+    OF_OBJECTS,
     RED,
     add,
+    attribute,
     ball,
     box,
     camera,
@@ -25,6 +29,7 @@ from stage import (
     sky,
     sphere_mesh,
     weighted,
+    with_properties,
 )
 
 
@@ -335,6 +340,25 @@ def of_no_surface():
     ):
         made = lamp(kind, position, power, turned=0.7, **settings)
         made.color, made.pass_index = (0.3, 0.5, 0.7, 0.4), 2
+        tree = tree_of(made)
+        tree.links.new(weighted(tree, outputs), tree.nodes["Emission"].inputs["Color"])
+
+
+@scene
+def attributes_of_lamps():
+    """Of view layers, and of objects: lamps are some since Blender 5."""
+    things()
+    with_properties(bpy.context.scene)
+    outputs = [(attribute("VIEW_LAYER", name), output, 0.2) for name, output in OF_LAYERS]
+    outputs += [(attribute("OBJECT", name), output, 0.2) for name, output in OF_OBJECTS]
+    outputs += [(attribute("INSTANCER", "own"), ALPHA, 0.2), (attribute("INSTANCER", "none"), ALPHA, 0.4)]
+    for kind, position, power, settings in (
+        ("POINT", (-2, -2, 4), 30, {"shadow_soft_size": 0.3}),
+        ("AREA", (2, -3, 3), 60, {"size": 1.5}),
+        ("SUN", (1, 2, 4), 0.3, {"angle": 0.2}),
+    ):
+        made = lamp(kind, position, power, **settings)
+        with_properties(made)
         tree = tree_of(made)
         tree.links.new(weighted(tree, outputs), tree.nodes["Emission"].inputs["Color"])
 

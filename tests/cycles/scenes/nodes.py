@@ -2,7 +2,26 @@
 """Node trees of materials: muting, groups, arithmetic, and what nodes fall back to."""
 
 import bpy
-from stage import add, box, daylight, diffuse, face_on, feed, gradient, image, material, painted, scene, sheet, stage
+from stage import (
+    ALPHA,
+    COLOR,
+    FACTOR,
+    add,
+    attribute,
+    box,
+    daylight,
+    diffuse,
+    face_on,
+    feed,
+    gradient,
+    image,
+    material,
+    painted,
+    scene,
+    sheet,
+    stage,
+    with_properties,
+)
 from wardmis import compat
 
 
@@ -44,6 +63,21 @@ def math(operation, *numbers, clamp=False):
         return node.outputs[0]
 
     return build
+
+
+@scene
+def attributes_that_are_properties():
+    """Of few numbers, and of none."""
+    with_properties(bpy.context.scene)
+    wanted = [("two", COLOR), ("two", FACTOR), ("two", ALPHA), ("four", ALPHA), ("none", ALPHA)]
+    row(
+        *(
+            lambda tree, of=of, name=name, output=output: add(tree, *attribute(of, name)).outputs[output]
+            for of in ("OBJECT", "VIEW_LAYER")
+            for name, output in wanted
+        )
+    )
+    with_properties(*(made for made in bpy.context.scene.objects if made.type == "MESH"))
 
 
 @scene

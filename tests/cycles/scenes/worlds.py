@@ -5,7 +5,24 @@ import math
 
 import bpy
 import numpy as np
-from stage import add, ball, box, camera, floor, image, material, saved_image, scene, sky, sun, weighted
+from stage import (
+    ALPHA,
+    OF_LAYERS,
+    add,
+    attribute,
+    ball,
+    box,
+    camera,
+    floor,
+    image,
+    material,
+    saved_image,
+    scene,
+    sky,
+    sun,
+    weighted,
+    with_properties,
+)
 
 
 def things():
@@ -441,6 +458,18 @@ def without_a_surface():
         else:
             outputs += [("LightFalloff", "Linear", 0.1), ("LightFalloff", "Constant", 0.1)]
         return weighted(tree, outputs)
+
+    computed(color)
+
+
+@scene
+def attributes_of_view_layers():
+    """And those of objects, of which there is none."""
+
+    def color(tree, _coordinates):
+        with_properties(bpy.context.scene)
+        outputs = [(attribute("VIEW_LAYER", name), output, 0.2) for name, output in OF_LAYERS]
+        return weighted(tree, [*outputs, (attribute("OBJECT", "none"), ALPHA, 0.2)])
 
     computed(color)
 

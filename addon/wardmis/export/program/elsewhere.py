@@ -9,8 +9,10 @@ from typing import Any
 from mathutils import Matrix
 
 from ... import compat
+from ..attribute import object_attribute
 from ..tree import NodeUse
 from .builder import Value, is_zero
+from .inputs import ATTRIBUTE_PREFIX
 from .reader import NOWHERE, Reader
 
 Answer = Value | Callable[[NodeUse, Reader], Value | None]
@@ -22,10 +24,27 @@ def elsewhere(use: NodeUse, output: Any, p: Reader) -> Value | None:
     if p.kind == "material":
         return None
     place = (use.node.bl_idname.removeprefix("ShaderNode"), output.name)
+    if place[0] == "Attribute":
+        return _attribute(use, output, p)
     answer = OF_BOTH.get(place)
     if answer is None:
         answer = (OF_WORLDS if p.kind == "world" else OF_LAMPS).get(place)
     return answer(use, p) if callable(answer) else answer
+
+
+def _attribute(use: NodeUse, output: Any, p: Reader) -> Value:
+    """There is no mesh; a world, and a lamp before it was an object, have no object either."""
+    owners = {"layer:": use.owner.context.layer}
+    if p.lamp is not None and compat.CYCLES >= 5:
+        owners |= p.lamp.object.owners
+    prefix = ATTRIBUTE_PREFIX[use.node.attribute_type]
+    found = (0.0, 0.0, 0.0, 1.0)
+    if prefix in owners:
+        found = object_attribute(prefix + use.node.attribute_name, owners)
+    r, g, b, alpha = found
+    if output.name == "Alpha":
+        return alpha
+    return (r + g + b) / 3 if output.type == "VALUE" else (r, g, b)
 
 
 def _tangent_of_geometry(use: NodeUse, p: Reader) -> Value:
@@ -158,7 +177,6 @@ OF_BOTH: dict[tuple[str, str], Answer] = {
     ("NewGeometry", "Pointiness"): 0.0,
     ("NewGeometry", "Random Per Island"): 0.0,
     ("Tangent", "Tangent"): _tangent,
-    ("Attribute", "Alpha"): 1.0,
     ("PointInfo", "Position"): NOWHERE,
     ("PointInfo", "Radius"): 0.0,
 }

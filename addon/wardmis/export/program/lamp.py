@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -19,12 +19,13 @@ Coordinates = Callable[[Any], Value]  # of a Reader
 
 @dataclass(frozen=True)
 class LampObject:
-    """What Object Info tells of it."""
+    """What Object Info and Attribute tell of it."""
 
     color: tuple[float, float, float] = (1.0, 1.0, 1.0)
     alpha: float = 1.0
     index: float = 0.0
     random: float = 0.0
+    owners: dict[str, tuple[Any, ...]] = field(default_factory=dict)  # of attributes, by how their names begin
 
 
 @dataclass(frozen=True)
