@@ -21,7 +21,10 @@ struct BumpShadow {
 
 // Cosines: of the surface's own normal and the light, of both normals, of the lobe's normal and the light. What goes
 // through the surface is darkened for light samples alone, as there.
-inline BumpShadow bumpShadow(int version, bool soft, float ownLight, float ownLobe, float lobeLight) {
+inline BumpShadow bumpShadow(int version, LobeKind kind, float ownLight, float ownLobe, float lobeLight) {
+  const bool soft = hasSoftTerminator(kind);
+  if (kind == LobeKind::kVelvet && version < 5)  // whose own samples alone count as diffuse
+    return {bumpShadow(version, LobeKind::kLambert, ownLight, ownLobe, lobeLight).bySurface, 1};
   const auto both = [&](float left) { return BumpShadow{lobeLight > 0 ? left : 1, left}; };
   if (version >= 5) {
     if (ownLight * ownLobe * lobeLight < 0) return soft ? both(0) : BumpShadow{1, 0};

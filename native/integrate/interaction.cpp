@@ -92,9 +92,10 @@ Framef resolveLobes(const Scene& scene, const Material& m, const ShadedPoint& po
       return normal == point.normal ? uint8_t{0} : surface.addFrame(Framef::around(normal), c.version);
     };
     // What would reflect into the surface is turned until it does not, as in Cycles; since 4.x not what is diffuse, but
-    // what is translucent is; and never on curves, of which a ribbon's own normal is not that of what is shown.
+    // what is translucent is, since 5.x not sheen; and never on curves, of which a ribbon's own normal is not that of
+    // what is shown.
     const auto reflecting = [&](Vec3f normal) {
-      if (isCurve(point.shape)) return normal;
+      if (isCurve(point.shape) || (c.version >= 5 && c.type == ClosureType::kSheen)) return normal;
       return surface::visiblyReflecting(c.version, point.geometric, point.wo, normal);
     };
     const Vec3f told = normalOf(c.normal, point.normal), n = reflecting(told);

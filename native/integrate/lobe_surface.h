@@ -177,10 +177,9 @@ class LobeSurface {
       if (!seen) v = unseen(l, w, local(l, wo));
       if (!(v.pdf > T(0))) continue;
       const Rgb value{static_cast<float>(v.fCos.x), static_cast<float>(v.fCos.y), static_cast<float>(v.fCos.z)};
-      const BumpShadow left = bump_[l.frame] == 0
-                                  ? BumpShadow{1, 1}
-                                  : bumpShadow(bump_[l.frame], hasSoftTerminator(l.kind), static_cast<float>(wi.z),
-                                               ownCosine_[l.frame], static_cast<float>(w.z));
+      const BumpShadow left = bump_[l.frame] == 0 ? BumpShadow{1, 1}
+                                                  : bumpShadow(bump_[l.frame], l.kind, static_cast<float>(wi.z),
+                                                               ownCosine_[l.frame], static_cast<float>(w.z));
       const bool sampled = seen && above == ahead;
       if (sampled) f[slot_[i]] += value * left.bySurface;
       if (slot_[i] != kCosine) {

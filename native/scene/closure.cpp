@@ -67,8 +67,9 @@ const ClosureInfo& info(ClosureType type) { return kTable[static_cast<size_t>(ty
 LobeCounts mostLobes(const Closure& c) {
   LobeCounts counts{};
   const auto add = [&](LobeClass kind, bool is = true) { counts[static_cast<size_t>(kind)] += is ? 1 : 0; };
-  // about a normal of its own a diffuse lobe has a technique of its own
-  add(LobeClass::kDiffuse, c.normal >= 0 && mayBeDiffuse(c));
+  // about a normal of its own a diffuse lobe has a technique of its own; by the rules of version 3 it may have one
+  // wherever the mesh's is not the face's
+  add(LobeClass::kDiffuse, (c.normal >= 0 || (c.version == 3 && c.type == ClosureType::kDiffuse)) && mayBeDiffuse(c));
   const auto addGlass = [&](const ScalarInput& roughness) {
     const bool known = roughness.texture.texture < 0 && roughness.result < 0, smooth = known && !(roughness.value > 0);
     add(LobeClass::kGlass, !smooth);

@@ -215,3 +215,36 @@ class Tangents(SceneTest):
     def test_none_without_the_uvs(self):
         wanted = Wanted(frozenset({"Other"}), tangents=frozenset({"Other"}))
         self.assertEqual(gather_geometry(self.mesh(True), wanted, ExportContext(export_image)).tangents, {})
+
+
+class BentNormals(SceneTest):
+    """Where normals are far from the faces' own, what is diffuse follows Cycles' rules for them."""
+
+    def material_of(self, add, smooth=True, node="ShaderNodeBsdfDiffuse"):
+        self.setUp()
+        add()
+        mesh = bpy.context.object.data
+        mesh.polygons.foreach_set("use_smooth", [smooth] * len(mesh.polygons))
+        material = bpy.data.materials.new("Material")
+        material.use_nodes = True
+        tree = material.node_tree
+        output = next(n for n in tree.nodes if n.bl_idname == "ShaderNodeOutputMaterial")
+        tree.links.new(tree.nodes.new(node).outputs[0], output.inputs["Surface"])
+        mesh.materials.append(material)
+        scene = self.gather()
+        return scene.materials[scene.meshes[0].primitives[0].material]
+
+    def test_a_smooth_cube_is_shaded_by_a_closure(self):
+        made = self.material_of(bpy.ops.mesh.primitive_cube_add)
+        self.assertEqual([c.type for c in made.closures], ["diffuse"])
+        self.assertEqual(made.diffuse.value, (0.0, 0.0, 0.0))
+        np.testing.assert_allclose(made.closures[0].inputs["color"].value, (0.8, 0.8, 0.8), atol=1e-6)
+
+    def test_flat_and_finely_smooth_shapes_keep_the_short_form(self):
+        for add, smooth in ((bpy.ops.mesh.primitive_cube_add, False), (bpy.ops.mesh.primitive_uv_sphere_add, True)):
+            made = self.material_of(add, smooth)
+            self.assertEqual(made.closures, [])
+            np.testing.assert_allclose(made.diffuse.value, (0.8, 0.8, 0.8), atol=1e-6)
+
+    def test_what_only_shines_keeps_it_too(self):
+        self.assertEqual(self.material_of(bpy.ops.mesh.primitive_cube_add, node="ShaderNodeEmission").closures, [])

@@ -6,12 +6,13 @@ What is black in Cycles is so here, and named if it is for want of nodes.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from .. import compat
 from .context import ExportContext
 from .image import MISSING
-from .model import ColorInput, MaterialData, ScalarInput, not_finite
+from .model import ClosureData, ColorInput, MaterialData, ScalarInput, not_finite
 from .program.closures import Shading
 from .program.reader import Reader
 from .program.surface import MOST_OPERATIONS, material_of
@@ -42,6 +43,19 @@ def export_material(material: Any, context: ExportContext) -> MaterialData:
         context.note(f"{owner.place} has nodes that are linked in a circle; rendered as black, as in Cycles")
         return MaterialData(name)
     return MaterialData(name, diffuse=ColorInput(MISSING))
+
+
+def is_matte(data: MaterialData) -> bool:
+    """Whether it is in the short form, and Lambert's alone."""
+    return not data.closures and not any(data.specular.value) and any(data.diffuse.value)
+
+
+def by_rules_of_cycles(data: MaterialData) -> MaterialData:
+    """What is Lambert's alone, as a closure: by Cycles' rules for normals that are not the face's, of which the short form has none."""
+    if not is_matte(data):
+        return data
+    closure = ClosureData("diffuse", None, {"color": data.diffuse}, {"version": compat.CYCLES}, None, None, None)
+    return replace(data, diffuse=ColorInput(), closures=[closure])
 
 
 def _plain(material: Any) -> MaterialData:

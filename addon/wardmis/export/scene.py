@@ -17,8 +17,8 @@ from .context import ExportContext, ExportError, Tell
 from .hashing import random_of
 from .image import WithinMemory
 from .light import export_light
-from .material import export_material
-from .mesh import Geometry, Wanted, assemble, gather_geometry, transformed, wanted_of
+from .material import by_rules_of_cycles, export_material, is_matte
+from .mesh import Geometry, Wanted, assemble, gather_geometry, has_bent_normals, transformed, wanted_of
 from .model import VISIBILITY, ClosureData, ColorInput, InstanceData, MaterialData, ScalarInput, SceneData
 from .motion import Motion, Opening, SetFrame, at_its_own_frame_again, go_to, opening_of, shutter_of
 from .program.lamp import LampObject
@@ -311,6 +311,9 @@ class _Gatherer:
         geometry = self._geometry[key]
         if geometry is None:
             return None
+        if any(is_matte(self.materials[m]) for m in materials) and has_bent_normals(geometry):
+            for m in set(materials):
+                self.materials[m] = by_rules_of_cycles(self.materials[m])
         self.meshes.append(assemble(source.name, geometry, materials))
         if self.motion is not None and kind == "mesh":
             self.motion.add_shape(instance, len(self.meshes) - 1, self.meshes[-1], geometry, wanted)

@@ -187,6 +187,21 @@ def upwards(n, _):
 
 
 @scene
+def smooth_of_few_faces():
+    stage()
+    for x, add in ((-1.2, bpy.ops.mesh.primitive_cube_add), (1.2, bpy.ops.mesh.primitive_cylinder_add)):
+        add(location=(x, 0, 1), **({"vertices": 8} if x > 0 else {"size": 1.4}))
+        made = bpy.context.object
+        made.data.materials.append(diffuse((0.8, 0.5, 0.3)))
+        made.data.polygons.foreach_set("use_smooth", [True] * len(made.data.polygons))
+
+
+@scene
+def diffuse_upwards():
+    bent("Diffuse", upwards)
+
+
+@scene
 def translucent_backwards():
     bent("Translucent", lambda n, i: -n)
 

@@ -292,9 +292,9 @@ TEST(BumpShadow, DarkensWhatGoesThroughForLightSamplesAlone) {
   const float turned = std::sqrt(0.5f);
   for (int version : {3, 4, 5})
     for (float side : {1.0f, -1.0f}) {
-      const BumpShadow low = bumpShadow(version, true, 0.2f * side, turned, 0.8f * side),
-                       other = bumpShadow(version, true, -0.2f * side, turned, 0.5f * side),
-                       facets = bumpShadow(version, false, -0.2f * side, turned, 0.5f * side);
+      const BumpShadow low = bumpShadow(version, LobeKind::kLambert, 0.2f * side, turned, 0.8f * side),
+                       other = bumpShadow(version, LobeKind::kLambert, -0.2f * side, turned, 0.5f * side),
+                       facets = bumpShadow(version, LobeKind::kGgx, -0.2f * side, turned, 0.5f * side);
       EXPECT_GT(low.byLight, 0.1);
       EXPECT_LT(low.byLight, 0.9);
       EXPECT_EQ(low.bySurface, side > 0 ? low.byLight : 1);

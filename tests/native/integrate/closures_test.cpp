@@ -242,6 +242,33 @@ TEST(Closures, LightSamplesGoByTheNormalAlone) {
   }
 }
 
+// A plain whose shading normals are so far from its face's that by the rules of version 3 they are turned: a sky, which
+// light samples do not aim at, adds to a lamp, though the diffuse lobe's normal is then no longer the plane's own.
+TEST(Closures, DiffuseLobesWithNormalsOfTheirOwnSeeTheSkyBesideALamp) {
+  const auto lit = [](bool lamp, bool sky) {
+    Scene scene = diffusePlane(4);
+    Closure diffuse = closure(ClosureType::kDiffuse);
+    diffuse.version = 3;
+    scene.materials[0] = material({diffuse});
+    for (MeshPart& p : scene.meshes[0].parts)
+      p.normals = Array<Vec3f>::of(std::vector<Vec3f>(p.positions.size(), normalize(Vec3f{3, 0, 1})));
+    if (lamp) {
+      Light above;
+      above.emitted = {100, 100, 100};
+      above.toWorld.t = {3, 0, 5};
+      scene.lights.push_back(above);
+    }
+    if (sky) {
+      scene.worlds = {World{}};
+      worldOf(scene).radiance = kWhite;
+    }
+    RenderSettings s = settings();
+    s.integrator = Integrator::kDirect;
+    return meanOf(scene, s);
+  };
+  EXPECT_NEAR(lit(true, true) / (lit(true, false) + lit(false, true)), 1, 0.02);
+}
+
 // A sheet that lets all light through and sends some of its own besides, under a white sky: 1 + a + e, the same with
 // few paths as with many.
 TEST(Closures, WhatIsAddedToATransparentSurfaceIsSeen) {
