@@ -222,16 +222,18 @@ class Images(unittest.TestCase):
 
     def test_pixels_of_a_multiplied_file_come_back(self):
         """Which Blender has divided, and cut off where they are not multiplied."""
-        for colors, note in ((0.3, False), (0.9, True)):
+        for colors, least, note in ((0.3, 0, False), (0.9, 0, True), (0.9, 1, True), (0.9, 200, True)):
             image = bpy.data.images.new("I", 16, 16, alpha=True)
             values = np.zeros((256, 4), np.float32)
-            values[:, 3] = np.arange(256) / 255
-            values[:, :3] = np.floor(colors * (np.arange(256) if not note else np.full(256, 255)))[:, None] / 255
+            alpha = np.maximum(np.arange(256), least)
+            values[:, 3] = alpha / 255
+            values[:, :3] = np.floor(colors * (alpha if not note else np.full(256, 255)))[:, None] / 255
             image.pixels.foreach_set(values.ravel())
-            image.filepath_raw, image.file_format = f"{self.path}-{note}.tga", "TARGA"
+            path = f"{self.path}-{least}-{note}.tga"
+            image.filepath_raw, image.file_format = path, "TARGA"
             image.save()
             bpy.data.images.remove(image)
-            image = bpy.data.images.load(f"{self.path}-{note}.tga")
+            image = bpy.data.images.load(path)
             self.addCleanup(bpy.data.images.remove, image)
             image.alpha_mode = "PREMUL"
             found = export_image(Picture(image)).pixels.reshape(256, 4)

@@ -189,7 +189,8 @@ class Picture:
             found.append(f"colour space '{space}' is not supported; its colours are read as sRGB")
         if not self.mime_type and self._is_read_by_cycles and is_cut_off(image):
             found.append(
-                "it is said to be Premultiplied, and its colours are not multiplied by alpha; Blender cuts the bright ones off"
+                "it is said to be Premultiplied, and it seems that its colours are not multiplied by alpha: Blender cuts those off that "
+                "are above it, and they become darker; set its alpha to what the file has, or save it as PNG"
             )
         if image.source == "MOVIE":
             found.append("movies are not supported; the picture that Blender holds now is used")
