@@ -356,6 +356,7 @@ class Reporter {
         return std::optional(curves.mean(draw, curves.checkpoints() - 1).error.back());
       });
       if (last && last->high > 0) ratio = times(roundUp(kTargetFactor * last->high));
+      if (ratio) return said(ratio, "time to its end");
     }
     if (ratio) return said(ratio, "time");
     return said(ratioTo(other, m,

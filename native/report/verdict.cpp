@@ -63,6 +63,27 @@ std::string share(const json& ratio, const char* of) {
   return text;
 }
 
+// Where the curve of another renderer ends before the target.
+bool isToItsEnd(const json& ratio) { return ratio["of"] == "time to its end"; }
+
+// Of a tie with another renderer at the target, or where its curve ends: whether it is one at equal time too, or, where
+// that is not known, by variance times seconds; and the sentence where it is not.
+std::string otherColumn(const json& c, const json& base, const json& ratio) {
+  const bool timed = ratioIn(c, "equal_time").is_object();
+  const Side side = sideOf(ratioIn(c, timed ? "equal_time" : "efficiency"));
+  if (side != Side::kBetter && side != Side::kWorse) return "";
+  const auto samples = [](const json& of) { return of["curve"].back()["spp"].get<int>(); };
+  std::string text = fmt::format(" {} is neither surely sooner nor later {}, and has {} ", c["name"].get<std::string>(),
+                                 isToItsEnd(ratio) ? "at the error where its curve ends" : "at the target",
+                                 side == Side::kBetter ? "less" : "more");
+  if (timed) return text + "error in the same time.";
+  text += "variance times seconds";
+  if (samples(c) != samples(base))
+    text += fmt::format(", with {} samples per pixel where {} has {}", samples(c), base["name"].get<std::string>(),
+                        samples(base));
+  return text + ".";
+}
+
 // "the noise of equal in half its time", or at equal time "half the error of equal in the same time"
 std::string gain(const json& ratio, const std::string& name) {
   return ratio["of"] == "error" ? fmt::format("{} in the same time", share(ratio, ("the error of " + name).c_str()))
@@ -119,8 +140,8 @@ std::string recommended(const json& r) {
 std::string verdictText(const json& r, const std::string& use, const json& ratios) {
   if (use.empty()) return noChoice(r);
   const json& base = baselineOf(r);
-  std::vector<std::string> brings, ties, slower, unsure, ahead, even, open;
-  std::string atEqualTime;  // of what is a tie at the target, and none in the other column
+  std::vector<std::string> brings, ties, slower, unsure, ahead, even, evenToEnd, open;
+  std::string apart;  // of what is a tie at the target, and none in the other column
   for (const json& c : r["configurations"]) {
     const std::string name = c["name"];
     if (name == use) continue;
@@ -129,8 +150,11 @@ std::string verdictText(const json& r, const std::string& use, const json& ratio
     if (isExternal(c)) {
       if (side == Side::kBetter) brings.push_back(gain(ratio, name));
       if (side == Side::kWorse) ahead.push_back(fmt::format("{} is better here: {}.", name, gain(inverse(ratio), use)));
-      if (side == Side::kTie) (isWide(ratio) ? open : even).push_back(name);
       if (side == Side::kUnknown) unsure.push_back(name);
+      if (side != Side::kTie) continue;
+      const std::string differs = use == base["name"] && ratio["of"] != "error" ? otherColumn(c, base, ratio) : "";
+      apart += differs;
+      if (differs.empty()) (isWide(ratio) ? open : isToItsEnd(ratio) ? evenToEnd : even).push_back(name);
     } else if (c["estimates"] != base["estimates"]) {
       continue;  // no rival
     } else if (isBiased(c) || side == Side::kUnknown) {
@@ -142,24 +166,26 @@ std::string verdictText(const json& r, const std::string& use, const json& ratio
     } else if (const Side error =
                    use == base["name"] && ratio["of"] == "time" ? sideOf(ratioIn(c, "equal_time")) : Side::kTie;
                error == Side::kBetter || error == Side::kWorse) {
-      atEqualTime += fmt::format(" {} is no sooner at the target, and has {} error in the same time.", name,
-                                 error == Side::kBetter ? "less" : "more");
+      apart += fmt::format(" {} is no sooner at the target, and has {} error in the same time.", name,
+                           error == Side::kBetter ? "less" : "more");
     } else {
       (isWide(ratio) ? open : ties).push_back(name);
     }
   }
-  const bool undecided = !ties.empty() || !open.empty() || !atEqualTime.empty() || !unsure.empty();
+  const bool undecided = !ties.empty() || !open.empty() || !apart.empty() || !unsure.empty();
   std::string text;
   for (const std::string& each : ahead) text += each + " ";
   text += fmt::format("{} {}", ahead.empty() ? "Use" : "Of WardMIS, use", use);
   if (!brings.empty())
     text += ": " + listed(brings);
-  else if (ahead.empty() && even.empty() &&
+  else if (ahead.empty() && even.empty() && evenToEnd.empty() &&
            (undecided ? ties.size() + open.size() + slower.size() > 0 : !slower.empty()))
     text += undecided ? ": nothing here is surely better" : ": nothing here is better";
   text += ".";
   if (!even.empty()) text += fmt::format(" Against {}, it is a tie.", listed(even));
-  text += sentence(ties, "is a tie", "are ties") + atEqualTime + sentence(slower, "is worse", "are worse");
+  if (!evenToEnd.empty())
+    text += fmt::format(" Against {}, it is a tie at the error where its curve ends.", listed(evenToEnd));
+  text += sentence(ties, "is a tie", "are ties") + apart + sentence(slower, "is worse", "are worse");
   if (!open.empty())
     text += open.size() > kFewNames ? fmt::format(" To {} others no difference was found.", open.size())
                                     : fmt::format(" No difference to {} was found.", listed(open));

@@ -24,7 +24,8 @@ json configuration(const std::string& name, const json& time, const json& error 
           {"pilot_seconds", 0.5},
           {"time_to_target", {{"seconds", ratio(1, 1, 1)}, {"ratio", time}}},
           {"equal_time", {{"seconds", 3.0}, {"ratio", error}}},
-          {"equal_samples", {{"ratio", samples}}}};
+          {"equal_samples", {{"ratio", samples}}},
+          {"efficiency", {{"ratio", nullptr}}}};
 }
 
 json cycles() {
@@ -117,6 +118,28 @@ TEST(Verdict, aTieIsOneInBothColumnsAndNarrow) {
             "Use equal: nothing here is surely better. No difference to auto was found.");
   EXPECT_EQ(verdictText(report({cycles()}), "equal", {{"Cycles", wide}}),
             "Use equal: nothing here is surely better. No difference to Cycles was found.");
+}
+
+TEST(Verdict, aTieWithAnotherRendererIsOneInBothColumnsToo) {
+  const auto said = [](const json& error, const json& product, const char* of, int samples = 64) {
+    json c = cycles();
+    c["equal_time"]["ratio"] = error, c["efficiency"] = {{"ratio", product}}, c["curve"][0]["spp"] = samples;
+    json r = report({c});
+    r["configurations"][0]["curve"][0]["spp"] = 64;
+    return verdictText(r, "equal", {{"Cycles", wardmis::of(of, ratio(.78, .9, 1.03))}});
+  };
+  const json same = ratio(.9, 1, 1.1), more = ratio(1.5, 1.67, 1.86), less = ratio(.5, .6, .7);
+  EXPECT_EQ(said(same, more, "time"), "Use equal. Against Cycles, it is a tie.");
+  EXPECT_EQ(said(more, same, "time"),
+            "Use equal. Cycles is neither surely sooner nor later at the target, and has more error in the same time.");
+  EXPECT_EQ(said(less, same, "time"),
+            "Use equal. Cycles is neither surely sooner nor later at the target, and has less error in the same time.");
+  EXPECT_EQ(said(nullptr, same, "time to its end", 32),
+            "Use equal. Against Cycles, it is a tie at the error where its curve ends.");
+  EXPECT_EQ(said(nullptr, more, "time to its end", 32),
+            "Use equal. Cycles is neither surely sooner nor later at the error where its curve ends, and has more "
+            "variance times "
+            "seconds, with 32 samples per pixel where equal has 64.");
 }
 
 TEST(Verdict, neitherBiasedNorOtherLightIsUsed) {
