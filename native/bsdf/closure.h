@@ -18,7 +18,6 @@ inline Rgb gray(float v) { return {v, v, v}; }
 inline Rgb clampedTo1(Rgb c) {
   return {std::clamp(c.x, 0.0f, 1.0f), std::clamp(c.y, 0.0f, 1.0f), std::clamp(c.z, 0.0f, 1.0f)};
 }
-inline Rgb notNegative(Rgb c) { return {std::max(c.x, 0.0f), std::max(c.y, 0.0f), std::max(c.z, 0.0f)}; }
 // Roughness that the tables of albedos are read at.
 inline float tableRoughness(const Lobe& l) { return std::sqrt(std::sqrt(l.ax * l.ay)); }
 

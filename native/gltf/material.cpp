@@ -450,8 +450,9 @@ void Materials::bake(const Bake& bake, ImageBudget& budget) {
     for (int x = 0; x < width; x++) {
       const Vec2f uv{(static_cast<float>(x) + 0.5f) / static_cast<float>(width),
                      (static_cast<float>(y) + 0.5f) / static_cast<float>(height)};
-      const Rgb gb = sampleRgb(read_, roughnessUse, uv);  // glTF: green is roughness, blue is metallic
-      const CoreColors colors = coreColors(bake.base * sampleRgb(read_, baseUse, uv), bake.metallic * gb.z);
+      const Rgb gb = notNegative(sampleRgb(read_, roughnessUse, uv));  // glTF: green is roughness, blue is metallic
+      const CoreColors colors =
+          coreColors(bake.base * notNegative(sampleRgb(read_, baseUse, uv)), bake.metallic * gb.z);
       const size_t i = size_t(y) * width + x;
       const auto store = [&](Image& image, Rgb c) {
         image.bytes[3 * i] = srgbByte(c.x), image.bytes[3 * i + 1] = srgbByte(c.y),

@@ -32,7 +32,8 @@ inline bool isAlpha(const Image& image, int channel) {
   return image.channels % 2 == 0 && channel == image.channels - 1;
 }
 
-// sRGB to linear of any number, after filtering: a look-up in [0, 1], whose nodes hold the 256 codes exactly.
+// sRGB to linear of any number, after filtering: a look-up in [0, 1], whose nodes hold the 256 codes exactly. There is
+// nothing below 0, as in Cycles.
 constexpr int kDecodeSteps = 255 * 16;
 inline const std::array<float, kDecodeSteps + 2> kDecode = [] {
   std::array<float, kDecodeSteps + 2> table;
@@ -40,7 +41,7 @@ inline const std::array<float, kDecodeSteps + 2> kDecode = [] {
   return table;
 }();
 inline float decodeFiltered(float v) {
-  if (!((v >= 0) & (v <= 1))) return srgbToLinear(v);
+  if (!((v >= 0) & (v <= 1))) return v < 0 ? 0 : srgbToLinear(v);
   const float x = v * kDecodeSteps;
   const int i = static_cast<int>(x);
   return kDecode[i] + (x - static_cast<float>(i)) * (kDecode[i + 1] - kDecode[i]);

@@ -34,7 +34,7 @@ void expand(const Closure& c, const ClosureValues& v, const std::array<float, 3>
     case ClosureType::kTranslucent:
       return addTranslucent(version, weight, add);
     case ClosureType::kTransparent:
-      return addTransparent(version, weight, add);
+      return addTransparent(version, v.weight * v.colors[0], add);  // which may take light away
     case ClosureType::kWard: {
       Lobe l;
       l.kind = wardKind(c.variant);

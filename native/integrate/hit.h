@@ -452,7 +452,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       Rgb w = (split ? f[t] : total(f)) * scale;
       if constexpr (kGeneral) w *= seenThrough;
       const Bounce bounce = !ahead ? kTransmissionBounce : diffuse ? kDiffuseBounce : kGlossyBounce;
-      if (record != nullptr && record->light != nullptr && maxComponent(w) > 0) {
+      if (record != nullptr && record->light != nullptr && strength(w) > 0) {
         record->light->share.set(continuations.count, {});
         LightSplit::PerComponent& share = record->light->share[continuations.count];
         const Rgb all = total(f);
@@ -465,8 +465,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
             to += Rgb{part(f[i].x, all.x), part(f[i].y, all.y), part(f[i].z, all.z)};
         }
       }
-      if (maxComponent(w) > 0)
-        continuations.list.set(continuations.count++, {ray, hit, w, t, bounce, scale, used, set, p});
+      if (strength(w) > 0) continuations.list.set(continuations.count++, {ray, hit, w, t, bounce, scale, used, set, p});
     }
   }
   if (record != nullptr && record->moments != nullptr)

@@ -13,10 +13,7 @@ void resolve(const Scene& scene, const Material& m, const ShadedPoint& point, Ve
   const auto color = [&](const ColorInput& c) {
     return c.result >= 0 ? c.value * vectorOf(program, slots, c.result) : evaluate(scene, c, uv);
   };
-  const auto reflectance = [&](const ColorInput& c) {
-    const Rgb v = color(c);
-    return Rgb{std::max(v.x, 0.0f), std::max(v.y, 0.0f), std::max(v.z, 0.0f)};
-  };
+  const auto reflectance = [&](const ColorInput& c) { return notNegative(color(c)); };
   const auto alpha = [&](const ScalarInput& c) {
     return c.result >= 0 ? clampedAlpha(c.value * numberOf(program, slots, c.result)) : evaluateAlpha(scene, c, uv);
   };

@@ -136,15 +136,18 @@ void resolveSurface(const Scene& scene, const Material& m, const ShadedPoint& po
   } else {
     Vec3f ns = point.normal;
     const auto color = [&](const ColorInput& c) { return c.texture.texture >= 0 ? evaluate(scene, c, uv) : c.value; };
+    const auto reflectance = [&](const ColorInput& c) {
+      return c.texture.texture >= 0 ? notNegative(evaluate(scene, c, uv)) : c.value;
+    };
     const auto alpha = [&](const ScalarInput& c) {
       return c.texture.texture >= 0 ? evaluateAlpha(scene, c, uv) : c.value;
     };
     if (m.program) [[unlikely]] {
       resolve(scene, m, point, uv, x.surface, x.emission, ns);
     } else {
-      if constexpr ((N & kNeedsDiffuse) != 0) x.surface.diffuse = color(m.diffuse);
+      if constexpr ((N & kNeedsDiffuse) != 0) x.surface.diffuse = reflectance(m.diffuse);
       if constexpr ((N & kNeedsSpecular) != 0) {
-        x.surface.specular = color(m.specular);
+        x.surface.specular = reflectance(m.specular);
         x.surface.ax = alpha(m.alphaX);
         x.surface.ay = alpha(m.alphaY);
       }

@@ -77,7 +77,7 @@ Rgb followPath(const RenderScene& scene, const Sampler& sampler, uint32_t pixelK
     const Continuation<K>& next = more.list[0];
     if (--left[next.bounce] < 0) break;
     weight *= next.weight;
-    survived *= maxComponent(next.weight);
+    survived *= maxComponent(absolute(next.weight));
     if (vertex >= 2) {
       const float q = std::min(0.95f, survived);
       if (sampler.get1D(pixelKey, plan.vertex * Dimensions<K>::kPerVertex + Dimensions<K>::kRoulette, index) >= q)

@@ -34,7 +34,7 @@ bool surfaceRays(const BuiltScene& built, uint32_t needs) {
   return e.anyShared() || e.anySky() || e.anyStrands() || (needs & kNeedsBounces) != 0;
 }
 
-// Whether there is light that takes away from other light.
+// Whether there is light that takes away from other light, or a surface that light goes through turns it so.
 bool negativeLight(const Scene& scene) {
   const auto negative = [](Rgb c) { return c.x < 0 || c.y < 0 || c.z < 0; };
   const auto texels = [&](int texture) {
@@ -49,6 +49,11 @@ bool negativeLight(const Scene& scene) {
     if (negative(m.emission.value) || m.emission.result >= 0 ||
         (!isBlack(m.emission.value) && texels(m.emission.texture.texture)))
       return true;
+  for (const Material& m : scene.materials)
+    for (const Closure& c : m.closures)
+      if (c.type == ClosureType::kTransparent &&
+          (negative(c.colors[0].value) || c.colors[0].result >= 0 || texels(c.colors[0].texture.texture)))
+        return true;
   for (const World& w : scene.worlds)
     if (negative(w.radiance) || w.program || (!isBlack(w.radiance) && texels(w.texture))) return true;
   return false;

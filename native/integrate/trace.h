@@ -34,7 +34,7 @@ namespace detail {
 template <class X>
 float passing(const X& x) {
   const Rgb through = x.surface.transparent;
-  const float passes = std::min((through.x + through.y + through.z) / 3, 1.0f);
+  const float passes = std::min(std::abs(through.x + through.y + through.z) / 3, 1.0f);
   const auto sent = [](Rgb c) { return std::min(std::abs(c.x) + std::abs(c.y) + std::abs(c.z), 1.0f); };
   const float stays = x.surface.strength() + x.surface.holdout + sent(x.emission);
   return passes > 0 ? passes / (passes + stays) : 0;
@@ -108,7 +108,7 @@ Rgb transmittance(const RenderScene& world, Ray ray) {
     const Shape& shape = world.geometry.shapes[hit.shape];
     left *=
         isCurve(shape) ? detail::throughCurve(*shape.strands, x.surface.transparent, ray.path) : x.surface.transparent;
-    if (!(maxComponent(left) > 0)) return kNone;
+    if (!(strength(left) > 0)) return kNone;
     ray.tMin = detail::behind(x, ray.direction, hit.t);
     ray.left = x.primitive;
     if (!(ray.tMin < ray.tMax)) return left;

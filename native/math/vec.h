@@ -63,14 +63,16 @@ bool isFinite(Vec3<T> v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
+constexpr Rgb notNegative(Rgb c) { return {std::max(c.x, 0.0f), std::max(c.y, 0.0f), std::max(c.z, 0.0f)}; }
+// The amounts of its colours, whatever their signs.
+constexpr Rgb absolute(Rgb c) { return {c.x < 0 ? -c.x : c.x, c.y < 0 ? -c.y : c.y, c.z < 0 ? -c.z : c.z}; }
+
 // Luminance of linear Rec. 709.
 // Light may be negative, as in Blender: it is none where all of it is 0.
 constexpr bool isBlack(Rgb c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 constexpr float luminance(Rgb c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
-// What it weighs when emitters are chosen between: by the amounts of its colours, whatever their signs.
-constexpr float strength(Rgb c) {
-  return luminance({c.x < 0 ? -c.x : c.x, c.y < 0 ? -c.y : c.y, c.z < 0 ? -c.z : c.z});
-}
+// What it weighs when emitters are chosen between.
+constexpr float strength(Rgb c) { return luminance(absolute(c)); }
 
 // Orthonormal basis whose z axis is n (a unit vector); x and y continuous except at n.z = 0 (Duff et al. 2017).
 template <class T>

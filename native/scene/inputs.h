@@ -14,12 +14,12 @@ inline Vec2f transformed(const TextureUse& use, Vec2f uv) {
   return {m[0] * uv.x + m[1] * uv.y + m[2], m[3] * uv.x + m[4] * uv.y + m[5]};
 }
 
-// What a texture contributes at the surface's uv; 1 if there is none. Texels may be negative, for filtering.
+// What a texture contributes at the surface's uv; 1 if there is none. Negative where its texels are: so may light be,
+// and what goes straight through; who makes a reflectance of it sees to that.
 inline Rgb sampleRgb(const Scene& scene, const TextureUse& use, Vec2f uv) {
   if (use.texture < 0) return {1, 1, 1};
   const Texture& texture = scene.textures[use.texture];
-  const Rgb c = lookUpRgb(scene.images[texture.image], texture, transformed(use, uv));
-  return {std::max(c.x, 0.0f), std::max(c.y, 0.0f), std::max(c.z, 0.0f)};
+  return lookUpRgb(scene.images[texture.image], texture, transformed(use, uv));
 }
 inline float sampleScalar(const Scene& scene, const TextureUse& use, Vec2f uv) {
   if (use.texture < 0) return 1;

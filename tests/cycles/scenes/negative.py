@@ -1,7 +1,26 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Light that takes light away: negative strengths of lamps, materials and worlds, over a sky that leaves something to take."""
 
-from stage import BLUE, GREEN, RED, add, ball, box, camera, emitter, floor, lamp, material, mesh, scene, sky, square
+import numpy as np
+from stage import (
+    BLUE,
+    GREEN,
+    RED,
+    add,
+    ball,
+    box,
+    camera,
+    emitter,
+    floor,
+    image,
+    lamp,
+    material,
+    mesh,
+    scene,
+    sheet,
+    sky,
+    square,
+)
 
 
 def things():
@@ -78,3 +97,58 @@ def computed_lamps():
         made = lamp(kind, position, power, **settings)
         made.data.use_nodes = True
         toned(made.data.node_tree, made.data.node_tree.nodes["Emission"], "TexCoord", "Normal")
+
+
+def texels(width, height, least):
+    """An image of floats from `least` to `least` + 2, the same every time."""
+    return image("Texels", np.random.RandomState(5).rand(height, width, 3) * 2 + least, floats=True)
+
+
+def textured(shader, mapped=False):
+    """A wall that shows the image straight, or turned."""
+    made, tree, output = material()
+    node = add(tree, shader)
+    shown = add(tree, "TexImage", {"image": texels(4, 4, -1)})
+    if mapped:
+        mapping = add(tree, "Mapping", Vector=add(tree, "TexCoord").outputs["UV"], Rotation=(0, 0, 0.3))
+        tree.links.new(mapping.outputs[0], shown.inputs["Vector"])
+    tree.links.new(shown.outputs["Color"], node.inputs["Color"])
+    tree.links.new(node.outputs[0], output.inputs["Surface"])
+    wall = sheet(made, size=1.2)
+    wall.location, wall.rotation_euler = (0, -1.5, 1.2), (1.2, 0, 0)
+
+
+@scene
+def image_emission():
+    things()
+    textured("Emission")
+
+
+@scene
+def image_emission_mapped():
+    things()
+    textured("Emission", mapped=True)
+
+
+@scene(bounces=2)
+def image_transparent():
+    """What is behind turns negative, for the camera, for shadows and for bounces."""
+    things()
+    textured("BsdfTransparent")
+    lamp("POINT", (-1, -4, 4), 300)
+
+
+@scene
+def image_diffuse():
+    """Where nothing is reflected, and no less."""
+    things()
+    textured("BsdfDiffuse")
+
+
+@scene(samples=128)
+def image_world():
+    things()
+    tree = sky((1, 1, 1))
+    shown = add(tree, "TexEnvironment", {"image": texels(16, 8, -0.5)})
+    tree.links.new(shown.outputs["Color"], tree.nodes["Background"].inputs["Color"])
+    camera(target=(0, 0, 2))

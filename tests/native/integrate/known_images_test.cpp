@@ -240,6 +240,36 @@ TEST(Irradiance, NegativeLight) {
   EXPECT_NEAR(radiance(scene), -1, 1e-3);
 }
 
+// So do texels that are below zero: of the sky, by its own samples and those of the surface, and of a mesh.
+TEST(Irradiance, NegativeTexels) {
+  for (Allocation allocation : {Allocation::kEqual, Allocation::kSecondMoment, Allocation::kAuto})
+    for (bool mesh : {false, true}) {
+      Scene scene = plane();
+      scene.textures = {{0, Wrap::kClamp, Wrap::kClamp, Filter::kNearest}};
+      double expected = 0;
+      if (mesh) {  // the left half takes what the right one gives half of
+        scene.images = {{"", 2, 1, 1, false, {}, {-2, 1}}};
+        scene.materials.push_back(ward({0, 0, 0}, {0, 0, 0}, 0.1f, WardVariant::kWardGmd));
+        scene.materials.back().emission.value = {1, 1, 1};
+        scene.materials.back().emission.texture.texture = 0;
+        addMesh(scene, {{-1, -0.5f, 1}, {1, -0.5f, 1}, {1, 0.5f, 1}, {-1, 0.5f, 1}}, {0, 1, 2, 0, 2, 3}, 1);
+        scene.meshes.back().parts[0].uvs = Array<Vec2f>::of({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
+        scene.instances.back().visibility = kSeenByAll & ~kSeenByCamera;
+        expected = -1 * 2 * cornerFactor(1, 0.5, 1);
+      } else {  // the upper half in four quarters
+        scene.images = {{"", 4, 2, 1, false, {}, {9, 9, 9, 9, -3, 1, 2, -2}}};
+        worldOf(scene).radiance = {1, 1, 1};
+        worldOf(scene).texture = 0;
+        expected = -0.5;
+      }
+      RenderSettings s = settings(1024);
+      s.allocation = allocation;
+      Statistics statistics;
+      EXPECT_NEAR(measure(renderScene(scene, s, &statistics)).mean, expected, 6e-3) << mesh << ' ' << name(allocation);
+      EXPECT_EQ(statistics.counts.rare.total(), 0u);
+    }
+}
+
 TEST(Irradiance, Ellipse) {
   Scene scene = plane();
   Light l;

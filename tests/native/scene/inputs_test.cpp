@@ -6,14 +6,14 @@
 namespace wardmis {
 namespace {
 
-TEST(Inputs, NegativeTexelsCountInTheFilterButGiveNoNegativeLight) {
+TEST(Inputs, NegativeTexelsCountInTheFilterAndGiveNegativeLight) {
   Scene scene;
   scene.images = {{"", 2, 1, 1, false, {}, {-1, 3}}};
   scene.textures = {{0, Wrap::kClamp, Wrap::kClamp, Filter::kLinear}};
   TextureUse use;
   use.texture = 0;
   EXPECT_FLOAT_EQ(sampleRgb(scene, use, {0.5f, 0.5f}).x, 1);
-  EXPECT_EQ(sampleRgb(scene, use, {0, 0.5f}).x, 0);
+  EXPECT_EQ(sampleRgb(scene, use, {0, 0.5f}).x, -1);
 }
 
 TEST(Inputs, AppliesItsTransform) {
