@@ -248,7 +248,7 @@ constexpr bool isDiffuse(LobeKind k) {
   return k <= LobeKind::kRoughTranslucent || k == LobeKind::kVelvet || k == LobeKind::kSchlickSheen;
 }
 // Of which Cycles does not ask on which side of the normal the view is.
-constexpr bool seenFromBelow(LobeKind k) { return k <= LobeKind::kRoughTranslucent; }
+constexpr bool seenFromBelow(LobeKind k) { return k <= LobeKind::kRoughTranslucent || k == LobeKind::kFibres; }
 // Lobes that are mirrored to below are asked with wi turned over.
 constexpr bool isMirrored(LobeKind k) {
   return k == LobeKind::kTranslucent || k == LobeKind::kRoughTranslucent || k == LobeKind::kThinTransmission;
@@ -263,7 +263,6 @@ LobeValue<T> evaluate(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
   if (isMirrored(l.kind)) wi = flipped(wi);
   if (isDiffuse(l.kind)) {
     if (!(wi.z > T(0)) || (!seenFromBelow(l.kind) && !(wo.z > T(0)))) return {};
-    wo.z = std::max(wo.z, T(0));
     return {diffuseF(l, wi, wo) * wi.z, wi.z * (T(1) / kPi<T>)};
   }
   switch (l.kind) {
@@ -301,7 +300,7 @@ LobeValue<T> evaluate(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
     case LobeKind::kClearcoat:
       return colored(reflectedColor(l, wi, wo), clearcoatEvaluate(wi, wo, ax));
     case LobeKind::kFibres: {
-      const T pdf = wo.z > T(0) ? fibrePdf(wi, wo, T(l.a), T(l.b)) : T(0);
+      const T pdf = fibrePdf(wi, wo, T(l.a), T(l.b));
       return {rgb<T>(l.weight) * pdf, pdf};
     }
     default:

@@ -33,10 +33,10 @@ struct OrenNayar {
   T meanAlbedo() const { return kPi<T> * a + (2 * kPi<T> - T(5.6)) / 3 * b; }
 };
 
-// f_s alone, both cosines positive.
+// f_s alone. A view from below the normal counts as one along the surface, as in Cycles.
 template <class T>
 inline T orenNayarF(Vec3<T> wi, Vec3<T> wo, T a, T b) {
-  const T t = wi.x * wo.x + wi.y * wo.y;  // wi.wo - ci co
+  const T t = wi.x * wo.x + wi.y * wo.y + wi.z * std::min(wo.z, T(0));  // wi.wo - ci max(co, 0)
   const T over = t > T(0) ? std::max(wi.z, wo.z) : T(1);
   return a + b * t / over;
 }
@@ -46,7 +46,7 @@ template <class T>
 inline T orenNayarMultiple(OrenNayar<T> model, T rho, T cosThetaO) {
   const T mean = model.meanAlbedo();
   return T(1) / kPi<T> * rho * rho * (mean / (T(1) - mean)) / (T(1) - rho * (T(1) - mean)) *
-         (T(1) - model.albedo(cosThetaO));
+         (T(1) - model.albedo(std::max(cosThetaO, T(0))));
 }
 
 // Diffuse reflection of Principled in Cycles 3.4: Burley 2012 ("Physically based shading at Disney") in the form of

@@ -114,10 +114,10 @@ inline void addTransmission(const Principled& p, Rgb weight, float ior, float co
 
 }  // namespace detail
 
-// What the emission of the shader is to be multiplied by, and the lobes. Cosines of the view with the normal, the
-// coat's and the sheen's: that goes from the normal to the coat's by the coat's weight.
+// What the emission of the shader is to be multiplied by, and the lobes. The sheen's normal
+// goes from the base's to the coat's by the coat's weight.
 template <class Add>
-inline Rgb expand(const Principled& p, Rgb weight, float cosBase, float cosCoat, float cosSheen, Add&& add) {
+inline Rgb expand(const Principled& p, Rgb weight, const ViewCosines& cosines, Add&& add) {
   using namespace detail;
   const float alpha = std::clamp(p.alpha, 0.0f, 1.0f), rough = std::clamp(p.roughness, 0.0f, 1.0f);
   if (alpha < 1) {
@@ -126,22 +126,22 @@ inline Rgb expand(const Principled& p, Rgb weight, float cosBase, float cosCoat,
   }
   if (p.sheenWeight > kLeastWeight) {
     const Rgb tint = notNegative(p.sheenTint) * p.sheenWeight;
-    weight *=
-        passed(tint * addFibres(weight * tint, std::clamp(p.sheenRoughness, 0.0f, 1.0f), cosSheen, kSheenFrame, add));
+    weight *= passed(
+        tint * addFibres(weight * tint, std::clamp(p.sheenRoughness, 0.0f, 1.0f), cosines.sheen, kSheenFrame, add));
   }
-  if (p.coatWeight > kLeastWeight) weight = addCoat(p, weight, cosCoat, add);
+  if (p.coatWeight > kLeastWeight) weight = addCoat(p, weight, cosines.coat, add);
   const Rgb emission = weight;
 
   const float anisotropic = std::clamp(p.anisotropic, 0.0f, 1.0f), aspect = std::sqrt(1 - anisotropic * 0.9f);
   const float ax = rough * rough / aspect, ay = rough * rough * aspect;
   const float metallic = std::clamp(p.metallic, 0.0f, 1.0f);
   if (metallic > kLeastWeight) {
-    addMetal(p, weight * metallic, ax, ay, cosBase, add);
+    addMetal(p, weight * metallic, ax, ay, cosines.base, add);
     weight *= 1 - metallic;
   }
   const float ior = std::max(p.ior, 1e-5f), transmission = std::clamp(p.transmissionWeight, 0.0f, 1.0f);
   if (transmission > kLeastWeight) {
-    addTransmission(p, weight * transmission, ior, cosBase, add);
+    addTransmission(p, weight * transmission, ior, cosines.base, add);
     weight *= 1 - transmission;
   }
 
@@ -156,9 +156,9 @@ inline Rgb expand(const Principled& p, Rgb weight, float cosBase, float cosCoat,
   if (eta != 1) {
     Lobe l = roughLobe(p.version, LobeKind::kGgx, weight, ax, ay);
     l.fresnel = Fresnel::kBlended, l.eta = eta, l.f0 = clampedTo1(notNegative(p.specularTint) * f0);
-    Rgb albedo = blendedAlbedo(l.f0, tableRoughness(l), cosBase, eta);
+    Rgb albedo = blendedAlbedo(l.f0, tableRoughness(l), cosines.base, eta);
     if (p.multiscatter) {
-      const Compensation c = compensate(reflectionAlbedo(tableRoughness(l), cosBase), blendedMean(l.f0, eta));
+      const Compensation c = compensate(reflectionAlbedo(tableRoughness(l), cosines.base), blendedMean(l.f0, eta));
       l.weight *= c.factor(), albedo *= c.darkening;
     }
     addLobe(p.version, l, add);
@@ -173,13 +173,14 @@ inline Rgb expand(const Principled& p, Rgb weight, float cosBase, float cosCoat,
     if (p.thinWall) {
       const float back = std::clamp(0.5f * (1 - p.subsurfaceAnisotropy), 0.0f, 1.0f);
       const float ahead = std::clamp(0.5f * (1 + p.subsurfaceAnisotropy), 0.0f, 1.0f);
-      addDiffuse(p.version, inside * back, clamped, diffuseRoughness, cosBase, add);
-      addDiffuse(p.version, inside * ahead, clamped, diffuseRoughness, cosBase, add, LobeKind::kRoughTranslucent);
+      addDiffuse(p.version, inside * back, clamped, diffuseRoughness, cosines.diffuse, add);
+      addDiffuse(p.version, inside * ahead, clamped, diffuseRoughness, cosines.diffuse, add,
+                 LobeKind::kRoughTranslucent);
     } else {
-      addDiffuse(p.version, inside, clamped, 0, cosBase, add);
+      addDiffuse(p.version, inside, clamped, 0, cosines.diffuse, add);
     }
   }
-  addDiffuse(p.version, weight * base * (1 - under), base, diffuseRoughness, cosBase, add);
+  addDiffuse(p.version, weight * base * (1 - under), base, diffuseRoughness, cosines.diffuse, add);
   return emission;
 }
 

@@ -7,8 +7,12 @@
 
 namespace wardmis {
 
-// Normals that lobes refer to by `frame`: cosines of the view are given for each.
+// Normals that lobes refer to by `frame`.
 enum PrincipledFrame : uint8_t { kBaseFrame, kCoatFrame, kSheenFrame };
+// Cosines of the view with them; that of diffuse lobes, which name the base's, is another one since Blender 4.0.
+struct ViewCosines {
+  float base, coat, sheen, diffuse;
+};
 
 struct Principled3 {
   Rgb baseColor{0.8f, 0.8f, 0.8f}, subsurfaceColor{0.8f, 0.8f, 0.8f};

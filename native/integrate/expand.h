@@ -14,10 +14,9 @@ struct ClosureValues {
   std::array<float, 15> scalars;
 };
 
-// Calls add(Lobe) for each. Frames 0 to 2 of the lobes are the closure's normal, its coat's, and the sheen's between
-// them; cosines: of the view with these. backfacing: the surface is seen from its other side.
+// Calls add(Lobe) for each. backfacing: the surface is seen from its other side.
 template <class Add>
-void expand(const Closure& c, const ClosureValues& v, const std::array<float, 3>& cosines, bool backfacing, Add&& add) {
+void expand(const Closure& c, const ClosureValues& v, const ViewCosines& cosines, bool backfacing, Add&& add) {
   const auto alpha = [](float a) { return std::clamp(a, 0.0f, 1.0f); };
   const auto eta = [&](float ior) {
     const float n = std::max(ior, 1e-5f);
@@ -30,7 +29,7 @@ void expand(const Closure& c, const ClosureValues& v, const std::array<float, 3>
     case ClosureType::kHoldout:
       return;
     case ClosureType::kDiffuse:
-      return addDiffuse(version, weight, color, s(0), cosines[0], add);
+      return addDiffuse(version, weight, color, s(0), cosines.diffuse, add);
     case ClosureType::kTranslucent:
       return addTranslucent(version, weight, add);
     case ClosureType::kTransparent:
@@ -43,15 +42,15 @@ void expand(const Closure& c, const ClosureValues& v, const std::array<float, 3>
       return;
     }
     case ClosureType::kGlossy:
-      return addGlossy(version, c.distribution, weight, color, alpha(s(0)), alpha(s(1)), cosines[0], add);
+      return addGlossy(version, c.distribution, weight, color, alpha(s(0)), alpha(s(1)), cosines.base, add);
     case ClosureType::kGlass:
-      return addGlass(version, c.distribution, v.weight, color, alpha(s(0)), eta(s(1)), cosines[0], add);
+      return addGlass(version, c.distribution, v.weight, color, alpha(s(0)), eta(s(1)), cosines.base, add);
     case ClosureType::kRefraction:
       return addRefraction(version, c.distribution, weight, alpha(s(0)), eta(s(1)), add);
     case ClosureType::kVelvet:
       return addVelvet(version, weight, s(0), add);
     case ClosureType::kSheen:
-      addFibres(weight, s(0), cosines[0], 0, add);
+      addFibres(weight, s(0), cosines.base, 0, add);
       return;
     case ClosureType::kPrincipled3: {
       using namespace principled3;
@@ -63,7 +62,7 @@ void expand(const Closure& c, const ClosureValues& v, const std::array<float, 3>
       p.clearcoatRoughness = s(kClearcoatRoughness), p.ior = s(kIor), p.transmission = s(kTransmission);
       p.transmissionRoughness = s(kTransmissionRoughness);
       p.multiscatter = c.distribution == Glossy::kMultiGgx, p.backfacing = backfacing;
-      return wardmis::expand(p, v.weight, cosines[0], cosines[1], add);
+      return wardmis::expand(p, v.weight, cosines.base, cosines.coat, add);
     }
     case ClosureType::kPrincipled: {
       using namespace principled;
@@ -78,7 +77,7 @@ void expand(const Closure& c, const ClosureValues& v, const std::array<float, 3>
       p.coatRoughness = s(kCoatRoughness), p.coatIor = s(kCoatIor), p.sheenWeight = s(kSheenWeight);
       p.sheenRoughness = s(kSheenRoughness);
       p.multiscatter = c.distribution == Glossy::kMultiGgx, p.thinWall = c.thinWall, p.backfacing = backfacing;
-      wardmis::expand(p, v.weight, cosines[0], cosines[1], cosines[2], add);
+      wardmis::expand(p, v.weight, cosines, add);
       return;
     }
   }

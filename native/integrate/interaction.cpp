@@ -92,7 +92,7 @@ Framef resolveLobes(const Scene& scene, const Material& m, const ShadedPoint& po
     // what is translucent is, since 5.x not sheen; and never on curves, of which a ribbon's own normal is not that of
     // what is shown.
     const auto reflecting = [&](Vec3f normal) {
-      if (isCurve(point.shape) || (c.version >= 5 && c.type == ClosureType::kSheen)) return normal;
+      if (isCurve(point.shape) || (c.version >= 4 && c.type == ClosureType::kSheen)) return normal;
       return surface::visiblyReflecting(c.version, point.geometric, point.wo, normal);
     };
     const Vec3f told = normalOf(c.normal, point.normal), n = reflecting(told);
@@ -111,7 +111,9 @@ Framef resolveLobes(const Scene& scene, const Material& m, const ShadedPoint& po
         at[kSheenFrame] = frameOf(normalize(told * (1 - share) + coat * share));
       }
     }
-    expand(c, v, {surface.cosine(at[0]), surface.cosine(at[1]), surface.cosine(at[2])}, point.turned, [&](Lobe lobe) {
+    const ViewCosines cosines{surface.cosine(at[kBaseFrame]), surface.cosine(at[kCoatFrame]),
+                              surface.cosine(at[kSheenFrame]), surface.cosine(atDiffuse)};
+    expand(c, v, cosines, point.turned, [&](Lobe lobe) {
       lobe.frame = lobe.frame == kBaseFrame && isDiffuse(lobe.kind) ? atDiffuse : at[lobe.frame];
       surface.add(lobe);
     });

@@ -16,8 +16,8 @@ Rgb belowLayers(const ShadingContext& c, Principled layers, Vec3f normal, Vec3f 
   };
   const float share = std::clamp(layers.coatWeight, 0.0f, 1.0f);
   const Vec3f coat = c.onCurve ? coatNormal : surface::visiblyReflecting(4, c.trueNormal, c.incoming, coatNormal);
-  return expand(layers, {1, 1, 1}, cosine(normal), cosine(coat), cosine(normal * (1 - share) + coatNormal * share),
-                [](const Lobe&) {});
+  const float base = cosine(normal), sheen = cosine(normal * (1 - share) + coatNormal * share);
+  return expand(layers, {1, 1, 1}, {base, cosine(coat), sheen, base}, [](const Lobe&) {});
 }
 
 }  // namespace wardmis

@@ -286,6 +286,23 @@ def diffuse_and_cloth():
     )
 
 
+@scene(samples=SAMPLES)
+def normals_away():
+    """Of matte shaders, from the camera, from the light or from both."""
+
+    def turned(kind, normal, **inputs):
+        def build(tree):
+            told = add(tree, "CombineXYZ", **dict(zip("XYZ", normal))).outputs[0]
+            return add(tree, kind, Normal=told, Color=AMBER, **inputs).outputs[0]
+
+        return build
+
+    cloth = ("BsdfVelvet", {"Sigma": 0.6}) if OLD else ("BsdfSheen", {"Roughness": 0.4})
+    kinds = (("BsdfDiffuse", {}), ("BsdfDiffuse", {"Roughness": 1}), ("BsdfTranslucent", {}), cloth)
+    normals = ((0.9, 0.3, 0.1), (-0.8, 0.6, 0.2), (0.3, -0.5, -0.8))
+    on_balls(*(turned(kind, normal, **inputs) for normal in normals for kind, inputs in kinds))
+
+
 @scene(samples=SAMPLES, bounces=2)
 def several_lobes():
     """More of them than techniques."""

@@ -82,7 +82,7 @@ std::vector<Lobe> lobesOf(int version, const json& s, float mu) {
   if (node == "velvet") addVelvet(version, color, rough, add);
   if (node == "sheen") addFibres(color, rough, mu, 0, add);
   if (node == "principled" && version == 3) expand(principled3Of(s["inputs"]), gray(1), mu, mu, add);
-  if (node == "principled" && version != 3) expand(principledOf(version, s["inputs"]), gray(1), mu, mu, mu, add);
+  if (node == "principled" && version != 3) expand(principledOf(version, s["inputs"]), gray(1), {mu, mu, mu, mu}, add);
   return all;
 }
 

@@ -17,7 +17,7 @@ using Vec = Vec3<double>;
 
 std::vector<Lobe> lobesOf(const Principled& p, float mu) {
   std::vector<Lobe> all;
-  expand(p, {1, 1, 1}, mu, mu, mu, [&](const Lobe& l) { all.push_back(l); });
+  expand(p, {1, 1, 1}, {mu, mu, mu, mu}, [&](const Lobe& l) { all.push_back(l); });
   return all;
 }
 std::vector<Lobe> lobesOf(const Principled3& p, float mu) {
@@ -77,12 +77,12 @@ TEST(Principled, LayersCoverThoseBelow) {
   Principled p;
   p.coatWeight = 1, p.coatTint = {0.5f, 1, 1};
   const float mu = 0.6f;
-  Rgb emission = expand(p, {1, 1, 1}, mu, mu, mu, [](const Lobe&) {});
+  Rgb emission = expand(p, {1, 1, 1}, {mu, mu, mu, mu}, [](const Lobe&) {});
   const float passes = 1 - fresnelDielectric(mu, 1.5f), depth = 1 / std::sqrt(1 - (1 - mu * mu) / 2.25f);
   EXPECT_NEAR(emission.y, passes, 1e-6);
   EXPECT_NEAR(emission.x, passes * std::pow(0.5f, depth), 1e-6);
   p.alpha = 0.25f;
-  emission = expand(p, {1, 1, 1}, mu, mu, mu, [](const Lobe&) {});
+  emission = expand(p, {1, 1, 1}, {mu, mu, mu, mu}, [](const Lobe&) {});
   EXPECT_NEAR(emission.y, 0.25f * passes, 1e-6);
   EXPECT_TRUE(has(lobesOf(p, mu), LobeKind::kTransparent));
   p.metallic = 1;  // nothing lies below metal
