@@ -89,6 +89,7 @@ int run(const Options& o, const std::string& command) {
     return 0;
   }
   for (const std::string& note : scene.notes) reporter.warn(note);
+  reporter.warnOfLacking(scene.lacking);
   for (size_t i = 0; i < o.specs.size(); ++i)
     if (const std::string why = optionsOf(o.specs[i], o.settings).yielding(); !why.empty())
       reporter.warn(fmt::format("configuration '{}': {}", plan.configurations[i].name, why));

@@ -199,9 +199,11 @@ int run(Options& o) {
                     {"notes", scene.notes}});
     reporter.info(fmt::format("{}: {} triangles, kernel: {}", o.scene, st.triangles, describe(st.kernel)));
     if (const std::string taken = describe(texelUse()); !taken.empty()) reporter.info("  textures: " + taken);
-    for (const std::string& left : st.leftOut) reporter.info("  left out: " + left);
+    for (size_t i = scene.lacking.size(); i < st.leftOut.size(); ++i)  // of those before it warns
+      reporter.info("  left out: " + st.leftOut[i]);
     if (!reporter.json())
       for (const std::string& note : scene.notes) reporter.warn(note);
+    reporter.warnOfLacking(scene.lacking);
     if (scene.degenerateTriangles > 0)
       reporter.info(fmt::format("  dropped: {} triangles without area", scene.degenerateTriangles));
   };

@@ -13,6 +13,8 @@
 namespace wardmis {
 namespace {
 
+constexpr size_t kMostLacking = 12;  // that a render warns of
+
 std::atomic<Stop> stopRequest{Stop::kNo};
 static_assert(std::atomic<Stop>::is_always_lock_free, "set from a signal handler");
 
@@ -71,6 +73,13 @@ void Reporter::warn(const std::string& message) {
   if (json_) return event({{"event", "warning"}, {"message", message}});
   clear();
   tell("wardmis: warning: " + message);
+}
+
+void Reporter::warnOfLacking(const std::vector<std::string>& lacking) {
+  if (json_) return;
+  const size_t told = lacking.size() <= kMostLacking ? lacking.size() : kMostLacking - 1;
+  for (size_t i = 0; i < told; ++i) warn("left out: " + lacking[i]);
+  if (told < lacking.size()) warn(fmt::format("left out: {} more, which wardmis info lists", lacking.size() - told));
 }
 
 void Reporter::info(const std::string& message) {

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "integrate/render.h"
 
@@ -32,6 +33,9 @@ class Reporter {
   void event(const nlohmann::json& e);    // for programs alone
   void warn(const std::string& message);  // for both
   void info(const std::string& message);  // for people who watch the bar
+  // Of what a file holds and the image lacks (Scene::lacking), for people: programs have it in their events. The first
+  // few, since wardmis info has them all.
+  void warnOfLacking(const std::vector<std::string>& lacking);
   void bar(double fraction, const std::string& doing, double seconds, double left);
   void clear();  // the bar
 

@@ -124,14 +124,14 @@ GlbChunks splitGlb(const Bytes& whole, const std::string& name, LeftOut& leftOut
   if (claimed > whole.size() || claimed < 12)
     fail(fmt::format("GLB header: claims {} bytes, but the file has {}", claimed, whole.size()));
   if (claimed < whole.size())
-    leftOut.add(fmt::format("the last {} bytes of the file", whole.size() - claimed),
-                "they lie behind the end that its header gives");
+    leftOut.addUnneeded(fmt::format("the last {} bytes of the file", whole.size() - claimed),
+                        "they lie behind the end that its header gives");
   const Bytes file = whole.part(0, claimed);
   GlbChunks chunks;
   int number = 0;
   for (size_t at = 12; at < file.size(); number++) {
     if (number > 0 && file.size() - at < 8) {
-      leftOut.add(fmt::format("{} bytes at the end of the file", file.size() - at), "they are no chunk");
+      leftOut.addUnneeded(fmt::format("{} bytes at the end of the file", file.size() - at), "they are no chunk");
       break;
     }
     if (file.size() - at < 8) fail(fmt::format("GLB chunk {}: its header at byte {} is cut off", number, at));
@@ -147,8 +147,8 @@ GlbChunks splitGlb(const Bytes& whole, const std::string& name, LeftOut& leftOut
     at += length;
     // Some writers pad a chunk without counting that, others count and do not pad: the next header tells.
     if (length % 4 != 0) {
-      leftOut.add(fmt::format("padding of GLB chunk {}", number),
-                  fmt::format("its length {} is no multiple of 4; the file is read all the same", length));
+      leftOut.addUnneeded(fmt::format("padding of GLB chunk {}", number),
+                          fmt::format("its length {} is no multiple of 4; the file is read all the same", length));
       const size_t padded = at + 4 - length % 4;
       const auto isBinary = [&](size_t from) { return from + 8 <= file.size() && word(file, from + 4) == kBinary; };
       if (!isBinary(at) && (isBinary(padded) || padded >= file.size())) at = std::min(padded, file.size());

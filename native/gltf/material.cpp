@@ -292,7 +292,7 @@ Material Materials::core(const Json& json) {
     if (const auto texture = coreTexture(json, "emissiveTexture", true)) m.emission.texture = *texture;
 
   for (const char* key : {"normalTexture", "occlusionTexture"})
-    if (json.find(key)) leftOut_.add(std::string(key), "not part of the renderer's materials");
+    if (json.find(key)) leftOut_.add(key + (" of " + user_), "not part of the renderer's materials");
   return m;
 }
 
@@ -596,10 +596,10 @@ void Materials::finish(Scene& scene) {
 
   for (size_t i = 0; i < materials_.size(); i++)
     if (!materialOf_.contains(i))
-      leftOut_.add("material " + materials_[i].described(), "nothing that is rendered uses it");
+      leftOut_.addUnneeded("material " + materials_[i].described(), "nothing that is rendered uses it");
   for (size_t i = 0; i < images_.size(); i++)
     if (imageOf_.lower_bound({i, {}}) == imageOf_.lower_bound({i + 1, {}}))
-      leftOut_.add("image " + images_[i].described(), "nothing that is rendered uses it");
+      leftOut_.addUnneeded("image " + images_[i].described(), "nothing that is rendered uses it");
 }
 
 }  // namespace wardmis

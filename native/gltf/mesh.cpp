@@ -187,9 +187,9 @@ Mesh Meshes::read(const Json& json) {
         leftOut_.add("vertex colours of mesh " + json.described() + " with " + materials_.described(material),
                      "the renderer does not use them");
       else if (key.starts_with("TEXCOORD_") && set < 0)
-        leftOut_.add("vertex attribute " + cleaned(key), "no texture and no anisotropy needs it there");
+        leftOut_.addUnneeded("vertex attribute " + cleaned(key), "no texture and no anisotropy needs it there");
       else if (key != "POSITION" && key != "NORMAL" && key != uvName)
-        leftOut_.add("vertex attribute " + cleaned(key), "the renderer does not use it");
+        leftOut_.addUnneeded("vertex attribute " + cleaned(key), "the renderer does not use it");
     });
 
     const auto mended = [&](size_t count) {
@@ -404,7 +404,7 @@ void Meshes::finish(Scene& scene) {
   scene.meshes = std::move(read_);
   scene.degenerateTriangles = degenerate_;
   const size_t unused = meshes_.size() - meshOf_.size();
-  if (unused > 0) leftOut_.add(std::to_string(unused) + " meshes", "no object of the scene uses them");
+  if (unused > 0) leftOut_.addUnneeded(std::to_string(unused) + " meshes", "no object of the scene uses them");
 }
 
 }  // namespace wardmis

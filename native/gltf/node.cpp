@@ -105,7 +105,7 @@ NodeForest::NodeForest(const Json& root, const JsonArray& nodes, LeftOut& leftOu
     if (parent_[i] != kNone)
       leftOut.add("the root " + nodes[i].described(),
                   fmt::format("it is none, but a child of {}, and stays there", nodes[parent_[i]].described()));
-    if (inScene_[i]) leftOut.add("the second of the root " + nodes[i].described(), "the scene lists it twice");
+    if (inScene_[i]) leftOut.addUnneeded("the second of the root " + nodes[i].described(), "the scene lists it twice");
     inScene_[i] = true;
   }
 }
@@ -201,7 +201,7 @@ std::vector<Affine> instanceMatrices(const Json& extension, Accessors& accessors
     else if (key == "SCALE")
       take(scales);
     else
-      leftOut.add("instance attribute " + cleaned(key), "the renderer does not use it");
+      leftOut.addUnneeded("instance attribute " + cleaned(key), "the renderer does not use it");
   });
   if (!count) attributes.failExpected("TRANSLATION, ROTATION or SCALE");
   buffers.budget.charge(*count * sizeof(Affine), extension);
@@ -266,7 +266,7 @@ void readNodes(const Json& root, Accessors& accessors, Buffers& buffers, Materia
                 "add a camera, or make one active, or let the command choose a view");
   for (size_t i = 0; i < nodes.size(); i++) {
     if (!forest.isInScene(i)) {
-      leftOut.add("nodes of other scenes", "only one scene is rendered");
+      leftOut.addUnneeded("nodes of other scenes", "only one scene is rendered");
       continue;
     }
     const Json node = nodes[i];
@@ -309,7 +309,7 @@ void readNodes(const Json& root, Accessors& accessors, Buffers& buffers, Materia
         light->visibility = visibility(node);
         scene.lights.push_back(std::move(*light));
       } else {
-        leftOut.add("light " + node.described(), "its power is 0");
+        leftOut.addUnneeded("light " + node.described(), "its power is 0");
       }
     }
   }

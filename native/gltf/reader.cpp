@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 
 #include "gltf/accessor.h"
 #include "gltf/file.h"
@@ -56,8 +57,10 @@ void checkExtensions(const Json& root, LeftOut& leftOut) {
                                    cleaned(required[i].string())),
                        "export the scene without it");
   for (size_t i = 0; i < used.size(); i++)
-    if (std::ranges::find(kKnown, used[i].string()) == std::end(kKnown))
-      leftOut.add("extension " + cleaned(used[i].string()), "this reader does not know it");
+    if (const std::string_view name = used[i].string(); std::ranges::find(kKnown, name) == std::end(kKnown)) {
+      const std::string what = "extension " + cleaned(name), why = "this reader does not know it";
+      isKnown(name) ? leftOut.addUnneeded(what, why) : leftOut.add(what, why);
+    }
 }
 
 Film readFilm(const Json& json) {
@@ -179,10 +182,11 @@ Scene read(const Bytes& file, const std::filesystem::path& folder, const std::st
   }
 
   readNodes(root, accessors, buffers, materials, meshes, leftOut, needsCamera, scene);
-  if (root.array("animations").size() > 0) leftOut.add("animations", "one frame is rendered");
+  if (root.array("animations").size() > 0) leftOut.addUnneeded("animations", "one frame is rendered");
   meshes.finish(scene);
   materials.finish(scene);
-  scene.leftOut = leftOut.list();
+  scene.lacking = scene.leftOut = leftOut.lacking();
+  std::ranges::copy(leftOut.unneeded(), std::back_inserter(scene.leftOut));
   scene.files = buffers.files();
   return scene;
 }

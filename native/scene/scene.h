@@ -254,7 +254,8 @@ struct Scene {
   std::vector<World> worlds;
   bool zUp = false;                  // frame of the Normal pass and of the world
   std::vector<std::string> notes;    // from the exporter: what it could not translate
-  std::vector<std::string> leftOut;  // what the reader did not load, and why
+  std::vector<std::string> lacking;  // what the reader did not load, and why, though the image would show it
+  std::vector<std::string> leftOut;  // these, and what makes no difference
   uint64_t degenerateTriangles = 0;  // dropped
 };
 

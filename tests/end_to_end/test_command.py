@@ -534,6 +534,37 @@ class Foreign(CommandTest):
         info = json.loads(self.run_command("info", self.gltf, "--json").stdout)
         self.assertEqual(info["camera"], "(fitted)")
 
+    def test_what_the_file_holds_and_the_image_lacks_is_said(self):
+        plain = json.loads(self.gltf.read_text())
+        (primitive,) = plain["meshes"][0]["primitives"]
+        glass = {"name": "Glass", "extensions": {"KHR_materials_transmission": {"transmissionFactor": 0.5}}}
+        listed = {"materials": [glass]}
+        scenes = {
+            "KHR_materials_transmission of material 'Glass'": listed
+            | {"meshes": [{"primitives": [primitive | {"material": 0}]}]},
+            "it has no POSITION": {"meshes": [{"primitives": [primitive, {"attributes": {"NORMAL": 0}}]}]},
+            "vertex colours of mesh": {"meshes": [{"primitives": [{"attributes": {"POSITION": 0, "COLOR_0": 0}}]}]},
+            "the root 'Child'": {"nodes": [{"children": [1]}, {"mesh": 0, "name": "Child"}]}
+            | {"scene": 0, "scenes": [{"nodes": [0, 1]}]},
+        }
+        small = ("--resolution", "8x6")
+        for i, (what, changes) in enumerate(scenes.items()):
+            self.gltf.write_text(json.dumps(plain | changes))
+            study = ("converge", self.gltf, "-o", self.folder / f"study {i}", "--seeds", "2", "--max-spp", "2")
+            for done in (self.render("--spp", "1", *small, scene=self.gltf), self.run_command(*study, *small)):
+                (said,) = [line for line in done.stderr.splitlines() if "left out" in line]
+                self.assertIn("warning: left out: ", said)
+                self.assertIn(what, said)
+        self.gltf.write_text(json.dumps(plain | listed))  # no triangle has it
+        self.assertNotIn("left out", self.render("--spp", "1", *small, scene=self.gltf).stderr)
+        many = [primitive] + [{"attributes": {"POSITION": 0}, "targets": [{"POSITION": 0}]}] * 20
+        meshes = [{"name": f"Mesh {i}", "primitives": [p]} for i, p in enumerate(many)]
+        nodes = [{"mesh": i} for i in range(len(many))]
+        self.gltf.write_text(json.dumps(plain | {"meshes": meshes, "nodes": nodes}))
+        said = self.render("--spp", "1", *small, scene=self.gltf).stderr
+        self.assertEqual(said.count("left out"), 12)
+        self.assertIn("left out: 9 more, which wardmis info lists", said)
+
     def test_without_defaults(self):
         self.refused(
             3, "render", self.gltf, "-o", self.out, "--no-defaults", says=("triangle.gltf: the scene has no camera",)
