@@ -85,8 +85,8 @@ struct HitPlan {
   Weights weights = Weights::kBalance;
   uint32_t pixelKey = 0, vertex = 0;
   uint32_t index = 0;  // of this visit, among the pixel's
-  // Index of each technique's first point here: consecutive over the pixel's visits, however many a visit takes, so
-  // that the sampler's points stay evenly spread under every allocation.
+  // Index of each technique's first point here: consecutive over the visits of the pixel's own surface, and over those
+  // of others, however many a visit takes, so that the sampler's points stay evenly spread under every allocation.
   std::array<uint32_t, K> firstPoint{};
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <bit>
+#include <numeric>
 #include <optional>
 
 #include "integrate/kernel.h"
@@ -23,12 +24,15 @@ template <class X>
   data.materialIndex = world.scene.materials[static_cast<size_t>(x.material)].index;
 }
 
+inline constexpr uint32_t kElsewhere = 0x656c7365u;  // sets apart a pixel's points on other surfaces than its own
+
 // Radiance along one camera ray. data, light: null where they are not wanted. taken: the pixel's samples of each
-// technique so far.
+// technique so far; elsewhere: of these, on other surfaces than its own.
 template <uint32_t N, size_t K>
 Rgb cameraSample(const KernelInput<K>& in, const Ray& camera, uint32_t pixelKey, uint32_t sample,
                  const PixelFractions<K>* allocated, Pixel& pixel, DataPixel* data, LightPixel* light, uint32_t* taken,
-                 PilotPixel* pilot, HitMoments<K>* moments, CandidateSums<K>* candidates, Counts& counts) {
+                 uint32_t* elsewhere, PixelSurface& own, PilotPixel* pilot, HitMoments<K>* moments,
+                 CandidateSums<K>* candidates, Counts& counts) {
   const RenderScene& world = in.scene;
   ++counts.cameraRays;
   const bool transparent = world.scene.film.transparent;
@@ -80,13 +84,19 @@ Rgb cameraSample(const KernelInput<K>& in, const Ray& camera, uint32_t pixelKey,
   if constexpr ((N & kNeedsLobes) != 0)
     if (world.isBeyond(ray)) return sum;
   HitPlan<K> plan;
-  const PixelSurface* const own = pilot != nullptr       ? &pilot->surface
-                                  : allocated != nullptr ? &allocated->surface
-                                                         : nullptr;
-  const bool follows = own == nullptr || own->holds(surface);
+  const PixelSurface* const told = pilot != nullptr       ? &pilot->surface
+                                   : allocated != nullptr ? &allocated->surface
+                                                          : nullptr;
+  const bool follows = told == nullptr || told->holds(surface);
   const Fractions<K>& shares =
       allocated != nullptr && follows && covers<K>(allocated->fractions, mask) ? allocated->fractions : in.fractions;
-  plan.index = follows ? pixel.visits++ : sample;
+  // Each of a pixel's surfaces has points of its own: of one sequence they would take what the others leave of it.
+  if (own.material < 0) own = surface;
+  const bool atOwn = own.holds(surface);
+  plan.index =
+      atOwn ? pixel.visits++ : std::accumulate(elsewhere, elsewhere + K, 0u) / static_cast<uint32_t>(in.samplesPerHit);
+  plan.pixelKey = atOwn ? pixelKey : combine(pixelKey, kElsewhere);
+  for (size_t i = 0; i < K; ++i) plan.firstPoint[i] = atOwn ? taken[i] - elsewhere[i] : elsewhere[i];
   plan.available = mask;
   if (candidates != nullptr) {  // the pilot of `auto`: each technique alike
     plan.samples = kSets * std::popcount(mask);
@@ -99,8 +109,6 @@ Rgb cameraSample(const KernelInput<K>& in, const Ray& camera, uint32_t pixelKey,
   }
   plan.integrand = in.integrand;
   plan.weights = in.weights;
-  plan.pixelKey = pixelKey;
-  std::copy_n(taken, K, plan.firstPoint.begin());
   Continuations<K> more;
   const Counts::PerTechnique before = counts.samples;
   std::optional<HitRecord<K>> record;
@@ -115,7 +123,11 @@ Rgb cameraSample(const KernelInput<K>& in, const Ray& camera, uint32_t pixelKey,
   sum += estimate<N, K>(world, in.sampler, x, plan, counts, record ? &*record : nullptr, more) * seenThrough;
   if (split != nullptr) [[unlikely]]
     addLight(light->direct, split->direct, seenThrough * exposure);
-  for (size_t i = 0; i < K; ++i) taken[i] += static_cast<uint32_t>(counts.samples[i] - before[i]);
+  for (size_t i = 0; i < K; ++i) {
+    const auto now = static_cast<uint32_t>(counts.samples[i] - before[i]);
+    taken[i] += now;
+    if (!atOwn) elsewhere[i] += now;
+  }
   if constexpr ((N & kNeedsBounces) != 0) {
     const Fractions<K> n = record ? Mixture<K>(plan.fractions, plan.samples, plan.weights).n : Fractions<K>{};
     for (int k = 0; k < more.count; ++k) {
@@ -167,9 +179,10 @@ void renderTile(const KernelInput<K>& in, const Tile& tile, FilmBuffer& film, Pi
           pixel.add({0, 0, 0});
           continue;
         }
-        const Rgb value = cameraSample<N, K>(in, ray, key, s, allocated, pixel, data, light,
-                                             &film.sampleCounts[index * K], pilotPixel, moments, candidates, counts) *
-                          exposure;
+        const Rgb value =
+            cameraSample<N, K>(in, ray, key, s, allocated, pixel, data, light, &film.sampleCounts[index * K],
+                               &film.elsewhere[index * K], film.own[index], pilotPixel, moments, candidates, counts) *
+            exposure;
         if (counts.rare.admit(value, in.least)) pixel.add(value);
       }
     }
