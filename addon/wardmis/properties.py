@@ -22,7 +22,7 @@ ALLOCATIONS = (
         "variance",
         "Variance",
         "In proportion to each technique's variance (Lopez Garces and Kong, Definition 8). In theory it has just the noise "
-        "of Equal, in practice a little more",
+        "of Equal; a pilot cannot measure it that well, and where highlights are very narrow it can have twice the error",
     ),
     (
         "standard-deviation",

@@ -23,6 +23,7 @@ from wardmis import light_paths, lock
 from wardmis.comparison import converge, cycles, cycles_settings
 from wardmis.comparison.manifest import Manifest
 from wardmis.comparison.overrides import overridden
+from wardmis.comparison.run import size_of
 from wardmis.comparison.scene_file import SceneFile, read_scene_file
 from wardmis.exr import read_header, read_pass
 
@@ -118,6 +119,13 @@ class Comparing(ComparisonTest):
                         renders._affordable(budget / 2, 64)
                 else:
                     self.assertEqual(renders._affordable(budget / 2, 64), samples, budget)
+
+    def test_resolutions_are_pairs_or_as_the_command_has_them(self):
+        for told in ((480, 270), [480, 270], "480x270"):
+            self.assertEqual(size_of(told), (480, 270))
+        for told in ("480", "480x", "480x2", "axb", 480, (480,), (480, None)):
+            with self.assertRaisesRegex(RuntimeError, "is no size of at least 4 x 4 pixels, as 480x270 is"):
+                size_of(told)
 
     def test_a_budget_that_is_too_small_is_refused_at_once(self):
         with self.assertRaisesRegex(RuntimeError, "give at least 6 s in all, or fewer seeds, or compare without"):

@@ -7,7 +7,6 @@ import argparse
 import contextlib
 import json
 import os
-import re
 import shutil
 import sys
 import time
@@ -20,7 +19,7 @@ from ..process import STOPPED
 from . import interrupt
 from .converge import DEFAULT_CONFIGURATIONS
 from .estimate import duration
-from .run import compare
+from .run import compare, size_of
 
 REDRAW_SECONDS = 0.5
 LINE_SECONDS = 10.0  # where the output is no terminal
@@ -65,10 +64,10 @@ def parser(program: str) -> argparse.ArgumentParser:
 
 
 def _size(text: str) -> tuple[int, int]:
-    match = re.fullmatch(r"(\d+)x(\d+)", text)
-    if not match or min(map(int, match.groups())) < 4:
-        raise argparse.ArgumentTypeError(f"'{text}' is no WIDTHxHEIGHT, as in 480x270")
-    return int(match[1]), int(match[2])
+    try:
+        return size_of(text)
+    except RuntimeError as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
 
 
 def main(words: list[str], program: str = "wardmis compare") -> int:

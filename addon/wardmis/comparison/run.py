@@ -50,7 +50,7 @@ def compare(
     target: float | None = None,
     title: str | None = None,
     threads: int | None = None,
-    resolution: tuple[int, int] | None = None,
+    resolution: tuple[int, int] | str | None = None,
     progress: Callable[[dict[str, Any]], None] | None = None,
 ) -> Outcome:
     """Compares configurations of WardMIS, and Cycles, on the current scene, frame and view layer; leaves everything in `output`.
@@ -59,7 +59,7 @@ def compare(
     seeds            independent renders of each; cycles_seeds: of Cycles (as many)
     max_spp          renders have 1, 2, 4 ... max_spp samples per pixel
     budget_seconds   instead of max_spp; with Cycles, half of it is Cycles', which takes as many samples as WardMIS, or fewer
-    resolution       width and height instead of the scene's
+    resolution       width and height instead of the scene's: (480, 270) or "480x270"
     as_is            Cycles with the scene's settings for it, else with everything off that biases its image
     progress         is called with each event, a dictionary as in the command's JSON lines
     The others are the command's options (docs/command.md). The same call again goes on where the last one was stopped.
@@ -115,13 +115,26 @@ def compare(
         return outcome
 
 
-def _resolution(scene: Any, size: tuple[int, int] | None) -> list[Setting]:
-    if size is None:
+def size_of(resolution: tuple[int, int] | str) -> tuple[int, int]:
+    """Raises RuntimeError with a message for the user."""
+    words = resolution.split("x") if isinstance(resolution, str) else resolution
+    try:
+        width, height = map(int, words)
+    except (TypeError, ValueError):
+        width = height = 0
+    if min(width, height) < 4:
+        raise RuntimeError(f"{resolution!r} is no size of at least 4 x 4 pixels, as 480x270 is")
+    return width, height
+
+
+def _resolution(scene: Any, resolution: tuple[int, int] | str | None) -> list[Setting]:
+    if resolution is None:
         return []
     render = scene.render
+    width, height = size_of(resolution)
     return [
-        (render, "resolution_x", size[0]),
-        (render, "resolution_y", size[1]),
+        (render, "resolution_x", width),
+        (render, "resolution_y", height),
         (render, "resolution_percentage", 100),
     ]
 
