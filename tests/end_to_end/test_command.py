@@ -153,12 +153,12 @@ class Files(CommandTest):
         for options, says, more in (
             (
                 ("65536x65536",),
-                ("65536 x 65536 pixels with 'auto' take 773.1 GB", "are free", "lower the resolution"),
+                ("65536 x 65536 pixels with 'auto' take 910.5 GB", "are free", "lower the resolution"),
                 {},
             ),
             (
                 ("3000x2000",),
-                ("1.1 GB of memory (180 bytes each)", "0."),
+                ("1.3 GB of memory (212 bytes each)", "0."),
                 {"preexec_fn": lambda: resource.setrlimit(*limit)},
             ),
         ):
