@@ -123,7 +123,19 @@ class Comparing(ComparisonTest):
     def test_resolutions_are_pairs_or_as_the_command_has_them(self):
         for told in ((480, 270), [480, 270], "480x270"):
             self.assertEqual(size_of(told), (480, 270))
-        for told in ("480", "480x", "480x2", "axb", 480, (480,), (480, None)):
+        for told in (
+            "480",
+            "480x",
+            "480x2",
+            "axb",
+            " 480x270",
+            "+480x270",
+            "4_80x270",
+            480,
+            (480,),
+            (480, None),
+            (480.5, 270),
+        ):
             with self.assertRaisesRegex(RuntimeError, "is no size of at least 4 x 4 pixels, as 480x270 is"):
                 size_of(told)
 

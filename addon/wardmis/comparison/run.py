@@ -6,6 +6,7 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import os
+import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -117,11 +118,9 @@ def compare(
 
 def size_of(resolution: tuple[int, int] | str) -> tuple[int, int]:
     """Raises RuntimeError with a message for the user."""
-    words = resolution.split("x") if isinstance(resolution, str) else resolution
-    try:
-        width, height = map(int, words)
-    except (TypeError, ValueError):
-        width = height = 0
+    parts = resolution if isinstance(resolution, tuple | list) else (resolution,)
+    match = re.fullmatch(r"(\d+)x(\d+)", "x".join(map(str, parts)))
+    width, height = map(int, match.groups()) if match else (0, 0)
     if min(width, height) < 4:
         raise RuntimeError(f"{resolution!r} is no size of at least 4 x 4 pixels, as 480x270 is")
     return width, height
