@@ -21,6 +21,7 @@ from make_scenes import box_mesh, sphere_mesh, square  # noqa: E402
 
 WHITE, RED, GREEN, BLUE, BLACK = (1, 1, 1), (1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0, 0)
 TOLERANCE = 0.005
+SAMPLES = 32
 
 
 @dataclass(frozen=True)
@@ -34,7 +35,7 @@ class Scene:
     why: str
     since: tuple[int, int]  # the first Blender that can make it
     without: tuple[int, int] | None  # one that cannot
-    samples: int = 64  # per pixel, of each seed
+    samples: int  # per pixel, of each seed
 
 
 SCENES: dict[str, Scene] = {}
@@ -48,9 +49,10 @@ def scene(
     why: str = "",
     since: tuple[int, int] = (3, 4),
     without: tuple[int, int] | None = None,
-    samples: int = 64,
+    samples: int | None = None,
 ) -> Any:
-    """Enters a function that builds into an empty Blender scene; it is named after it and its file. `bounces` are Cycles'; 0: direct light."""
+    """Enters a function that builds into an empty Blender scene; it is named after it and its file. `bounces` are Cycles'; 0: direct light.
+    `samples` are what the topic says in its SAMPLES, if it does."""
     if function is None:
         return lambda f: scene(
             f, bounces=bounces, within=within, why=why, since=since, without=without, samples=samples
@@ -58,6 +60,7 @@ def scene(
     name = f"{function.__module__.rpartition('.')[2]}-{function.__name__}"
     assert name not in SCENES, f"two scenes are called {name}"
     assert within <= TOLERANCE or why, f"{name} may deviate by {within}: why?"
+    samples = samples or function.__globals__.get("SAMPLES", SAMPLES)
     SCENES[name] = Scene(name, function, bounces, within, why, since, without, samples)
     return function
 

@@ -64,12 +64,12 @@ def limited(diffuse_bounces: int, glossy_bounces: int) -> None:
     lamp("AREA", (0.5, 0.5, 5.5), 100, target=(0.3, 0.4, 0), shape="RECTANGLE", size=2, size_y=1)
 
 
-def enter(name: str, samples: int, build: Callable[[], None]) -> None:
+def enter(name: str, build: Callable[[], None]) -> None:
     build.__name__ = name
-    scene(bounces=12, samples=samples)(build)
+    scene(bounces=12)(build)
 
 
 for count in (0, 2, 4):
-    enter(f"diffuse_{count}", 32, lambda count=count: (interior(), limited(count, 4)))
+    enter(f"diffuse_{count}", lambda count=count: (interior(), limited(count, 4)))
 for count in (0, 1, 4):
-    enter(f"glossy_{count}", 64, lambda count=count: (interior(mirrors=True), limited(2, count)))
+    enter(f"glossy_{count}", lambda count=count: (interior(mirrors=True), limited(2, count)))

@@ -9,6 +9,7 @@ import numpy as np
 from stage import add, checker, diffuse, face_on, feed, gradient, image, material, painted, saved_image, scene, sheet
 from wardmis import compat
 
+SAMPLES = 16  # of next to no noise
 CORNERS = checker((0.9, 0.1, 0.1), (0.1, 0.8, 0.2), (0.1, 0.2, 0.9), (0.8, 0.8, 0.1))
 
 

@@ -32,6 +32,8 @@ from stage import (
     with_properties,
 )
 
+SAMPLES = 64  # of lamps far away and narrow ones
+
 
 def things():
     floor()
