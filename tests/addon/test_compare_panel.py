@@ -125,6 +125,21 @@ class Background(PanelTest):
         manifest = json.loads((folder / "cycles" / "manifest.json").read_text())
         self.assertEqual(sorted({run["spp"] for run in manifest["runs"]}), [1, 2, 4])
 
+    def test_without_time_for_cycles_the_others_are_shown(self):
+        self.settings.use_cycles = True
+        self.settings.stop_by = "seconds"
+        with mock.patch.object(
+            operators, "divide", lambda study, *_: divide(replace(study, budget_seconds=0.02), 2, None, False)
+        ):
+            bpy.ops.wardmis.compare()
+            failed = self.wait()
+        self.assertRegex(
+            failed.failure, "4 samples per pixel by Cycles .* a lower resolution. The results below are without"
+        )
+        self.assertNotIn("folder", failed.failure)
+        self.assertEqual(properties.report().folder, failed.folder)
+        self.assertNotIn("Cycles", properties.report().image_names)
+
     def test_a_refused_budget_leaves_no_folder(self):
         self.settings.use_cycles = True
         self.settings.stop_by = "seconds"
@@ -624,6 +639,8 @@ class Times(PanelTest):
             (estimate.FEWEST_SAMPLES, estimate.FEWEST_SEEDS, estimate.CYCLES_SHARE, estimate.MARGIN),
             (cycles.FEWEST_OF_BUDGET, cycles.FEWEST_SEEDS_OF_BUDGET, cycles.BUDGET_SHARE, cycles.MARGIN),
         )
+        factors = [factor * cycles.REFERENCE_IMAGES for factor in cycles.REFERENCE_FACTORS]
+        self.assertEqual(estimate.CYCLES_REFERENCE_FACTORS, (factors[0], factors[-1]))
 
     def test_a_render_is_measured(self):
         rendering.note_speed(100.0, 2.0)

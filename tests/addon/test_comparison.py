@@ -105,8 +105,18 @@ class Comparing(ComparisonTest):
         self.assertEqual(len(data["reference"]["images"]), 4)
 
     def test_samples_that_a_budget_allows(self):
-        """Of renders whose costs are known: 0.1 s each, and 0.01 s a sample; two seeds, and four images of eight times the samples."""
-        for budget, samples in ((10, 8), (30, 32), (1e6, 64), (5.5, 4), (5, None)):
+        """Of renders whose costs are known: 0.1 s each, and 0.01 s a sample; two seeds, and four images of eight times the samples,
+        or four, or two."""
+        affordable = (
+            (10, (8, 64)),
+            (30, (32, 256)),
+            (1e6, (64, 512)),
+            (5.5, (4, 32)),
+            (5, (4, 16)),
+            (3.5, (4, 8)),
+            (3, None),
+        )
+        for budget, samples in affordable:
             plan = cycles.CyclesPlan([1, 2], 64, budget_seconds=budget)
             manifest = Manifest(self.folder / "cycles" / "manifest.json", {"settings": {}, "renderer": ""}, (8, 16))
             renders = cycles._Renders(self.scene, bpy.context.view_layer, manifest, plan, lambda _event: None)
@@ -114,7 +124,7 @@ class Comparing(ComparisonTest):
             with mock.patch.object(renders, "_timed", lambda spp, _seed: (0.1 + 0.01 * spp, 0.0)):
                 if samples is None:
                     with self.assertRaisesRegex(
-                        RuntimeError, "4 samples per pixel by Cycles take about 2 s.* give at least"
+                        RuntimeError, "4 samples per pixel by Cycles take about 1 s.* give at least"
                     ):
                         renders._affordable(budget / 2, 64)
                 else:

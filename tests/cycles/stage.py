@@ -35,7 +35,7 @@ class Scene:
     why: str
     since: tuple[int, int]  # the first Blender that can make it
     without: tuple[int, int] | None  # one that cannot
-    samples: int  # per pixel, of each seed
+    samples: int = SAMPLES  # per pixel, of each seed
 
 
 SCENES: dict[str, Scene] = {}

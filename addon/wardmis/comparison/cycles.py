@@ -28,7 +28,8 @@ from .manifest import Manifest
 from .overrides import overridden
 from .scene_file import SceneFile
 
-REFERENCE_FACTOR = 8  # samples of each of the reference images, over the largest number of a run
+# samples of each of the reference images, over the largest number of a run; fewer where a budget would not suffice
+REFERENCE_FACTORS = 8, 4, 2
 REFERENCE_IMAGES = 4  # independent ones, so that the variance of their mean is known
 # far from any that a run has, so that nothing is compared with its own samples
 REFERENCE_SEED = 1_000_003
@@ -52,14 +53,14 @@ Progress = Callable[[dict[str, Any]], None]
 class CyclesPlan:
     seeds: list[int]
     max_spp: int  # samples per pixel of the last checkpoint
-    reference_spp: int | None = None  # of each of the REFERENCE_IMAGES; else REFERENCE_FACTOR times a run's
+    reference_spp: int | None = None  # of each of the REFERENCE_IMAGES; else REFERENCE_FACTORS times a run's
     as_is: bool = False
     threads: int = 0
     # then there are at most as many samples as WardMIS' own study has chosen, which stands in the folder above
     budget_seconds: float | None = None
 
-    def reference_of(self, max_spp: int) -> int:
-        return self.reference_spp or REFERENCE_FACTOR * max_spp
+    def reference_of(self, max_spp: int, factor: int = REFERENCE_FACTORS[0]) -> int:
+        return self.reference_spp or factor * max_spp
 
 
 def require_cycles(scene: Any) -> None:
@@ -148,41 +149,44 @@ class _Renders:
     def _decide_samples(self) -> int:
         """Samples per pixel of the last checkpoint."""
         plan, manifest = self.plan, self.manifest
-        spp = plan.max_spp
-        if plan.budget_seconds is not None:  # once it has decided, the comparison goes on as it began
-            spp = manifest.max_spp or self._affordable(plan.budget_seconds, chosen_spp(self.place))
-        manifest.decide(spp, plan.reference_of(spp))
+        if plan.budget_seconds is None:
+            spp, reference = plan.max_spp, plan.reference_of(plan.max_spp)
+        elif manifest.max_spp:  # once it has decided, the comparison goes on as it began
+            spp, reference = manifest.max_spp, plan.reference_spp or manifest.reference_spp
+        else:
+            spp, reference = self._affordable(plan.budget_seconds, chosen_spp(self.place))
+        manifest.decide(spp, reference)
         return spp
 
-    def _affordable(self, budget: float, most: int) -> int:
-        """The largest number of samples whose renders fit into the budget."""
+    def _affordable(self, budget: float, most: int) -> tuple[int, int]:
+        """The largest number of samples, and then of the reference's, whose renders fit into the budget."""
         self.progress({"event": "progress", "phase": "Cycles' speed", "fraction": 0.0})
+        plan = self.plan
         synchronisation = self._measure_synchronisation()
         wall, _ = self._timed(PROBE_SAMPLES, 0)
         sample = max(0.0, wall - synchronisation) / PROBE_SAMPLES
         spent = time.monotonic() - self.began
 
-        def seconds(spp: int, seeds: int) -> float:
+        def seconds(spp: int, seeds: int, factor: int) -> float:
             points = checkpoints(spp)
             run = len(points) * synchronisation + sum(points) * sample
-            reference = synchronisation + self.plan.reference_of(spp) * sample
+            reference = synchronisation + plan.reference_of(spp, factor) * sample
             return spent + seeds * run + REFERENCE_IMAGES * reference
 
         possible = [spp for spp in checkpoints(most) if spp >= FEWEST_OF_BUDGET] or [most]
-        seeds = len(self.plan.seeds)
-        fitting = [spp for spp in possible if seconds(spp, seeds) <= BUDGET_SHARE * budget]
-        fewest, fewest_seeds = possible[0], min(FEWEST_SEEDS_OF_BUDGET, seeds)
-        if not fitting and seconds(fewest, fewest_seeds) <= BUDGET_SHARE * budget:
-            return fewest  # of as many seeds as the time allows
-        if not fitting:
-            needed = seconds(fewest, fewest_seeds)
-            raise RuntimeError(
-                f"WardMIS: {fewest} samples per pixel by Cycles take about {needed:.0f} s here, with {fewest_seeds} "
-                f"seeds and the reference, and its half of the budget is {budget:.3g} s; give at least "
-                f"{math.ceil(MARGIN * 2 * needed / BUDGET_SHARE)} s in all, or fewer seeds of Cycles or a lower resolution, "
-                f"and another output folder; {self.place} keeps the report without it"
-            )
-        return fitting[-1]
+        fewest_seeds = min(FEWEST_SEEDS_OF_BUDGET, len(plan.seeds))
+        for seeds in (len(plan.seeds), fewest_seeds):  # there are as many as the time allows
+            for factor in REFERENCE_FACTORS:
+                for spp in reversed(possible):
+                    if seconds(spp, seeds, factor) <= BUDGET_SHARE * budget:
+                        return spp, plan.reference_of(spp, factor)
+        needed = seconds(possible[0], fewest_seeds, REFERENCE_FACTORS[-1])
+        raise RuntimeError(
+            f"WardMIS: {possible[0]} samples per pixel by Cycles take about {needed:.0f} s here, with {fewest_seeds} "
+            f"seeds and the reference, and its half of the budget is {budget:.3g} s; give at least "
+            f"{math.ceil(MARGIN * 2 * needed / BUDGET_SHARE)} s in all, or fewer seeds of Cycles or a lower resolution, "
+            f"and another output folder; {self.place} keeps the report without it"
+        )
 
     def _work_left(self, points: list[int]) -> list[tuple[str, int, int]]:
         """(kind, seed, spp): two seeds first, without which there is no interval, then the reference, then the other seeds."""

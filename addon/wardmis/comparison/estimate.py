@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from .converge import Study, checkpoints
 
 REFERENCE_FACTOR = 16  # samples of the command's reference, over those of a run
-CYCLES_REFERENCE_FACTOR = 32  # of all of Cycles' reference images
+CYCLES_REFERENCE_FACTORS = 32, 8  # of all of Cycles' reference images; with the least for which a budget has to suffice
 FEWEST_SAMPLES, FEWEST_SEEDS = 4, 4  # for which a budget has to suffice
 MEASURED_SAMPLES = 8  # of each configuration, and the first time once more, by which the command knows what one costs
 SURVEY_SAMPLES = 16  # which the command takes twice besides, to tell where samples go and what they cost
@@ -48,7 +48,7 @@ def estimate(study: Study, pixels: int, cycles_seeds: int | None, speeds: Speeds
     own = pixels * samples / (speeds.own or guess)
     if cycles_seeds is None:
         return Estimate(own, 0.0, speeds.own is None)
-    samples = sum(checkpoints(study.max_spp)) * cycles_seeds + CYCLES_REFERENCE_FACTOR * study.max_spp
+    samples = sum(checkpoints(study.max_spp)) * cycles_seeds + CYCLES_REFERENCE_FACTORS[0] * study.max_spp
     cycles = pixels * samples / (speeds.cycles or speeds.own or guess)
     return Estimate(own, cycles, speeds.own is None)
 
@@ -63,7 +63,7 @@ def _needed(study: Study, pixels: int, cycles_seeds: int | None, speeds: Speeds)
         own = MARGIN * pixels * samples / speeds.own / OWN_SHARE
     if speeds.cycles and cycles_seeds is not None:
         seeds = min(FEWEST_SEEDS, cycles_seeds)
-        samples = sum(checkpoints(FEWEST_SAMPLES)) * seeds + CYCLES_REFERENCE_FACTOR * FEWEST_SAMPLES
+        samples = sum(checkpoints(FEWEST_SAMPLES)) * seeds + CYCLES_REFERENCE_FACTORS[1] * FEWEST_SAMPLES
         cycles = MARGIN * pixels * samples / speeds.cycles / CYCLES_SHARE
     return own if cycles_seeds is None else 2 * max(own, cycles)
 

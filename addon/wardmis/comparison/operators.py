@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import math
 import os
@@ -30,6 +31,7 @@ from .overrides import overridden
 from .run import CYCLES_FOLDER, SCENE_NAME, check_study, divide, forget, prepare, scene_title, threads_of
 from .same_scene import settle
 
+WITHOUT_CYCLES = ". The results below are without Cycles"
 KEY = "J"  # with Shift; alone it turns Blender's own render slots over
 
 
@@ -175,8 +177,7 @@ class _Asked:
             ) from error
         outcome = Outcome(folder, folder / SCENE_NAME)
         comparison.folder = folder
-        if new:
-            comparison.failed = lambda: forget(outcome)
+        comparison.failed = functools.partial(_failed, outcome, new)
         if not settings.use_cycles:
             return [self._own(study, outcome, self.estimate.own)]
         stages = []
@@ -204,6 +205,7 @@ class _Asked:
         whose = "WardMIS' half of the time" if self.settings.use_cycles else "the time"
         message = re.sub(r"--budget-seconds ([\d.e+]+):", rf"{whose}, \1 s, is too little:", message)
         message = re.sub(r"^.* failed \(exit code 2\): ", "", message)
+        message = re.sub(r",? and another output folder; .* keeps the report without it", WITHOUT_CYCLES, message)
         for ours, panels in (("--seeds", "seeds"), ("--resolution", "resolution"), ("configurations", "allocations")):
             message = message.replace(ours, panels)
         return message
@@ -212,6 +214,15 @@ class _Asked:
 def _as_it_is(group: Any) -> Any:
     """The values of a property group, which do not change with it."""
     return types.SimpleNamespace(**{p.identifier: getattr(group, p.identifier) for p in group.bl_rna.properties})
+
+
+def _failed(outcome: Outcome, new: bool) -> None:
+    """Of what has rendered nothing nothing stays; a report that there is already, as that without Cycles, is shown."""
+    if new:
+        forget(outcome)
+    if outcome.report_json.is_file():
+        with contextlib.suppress(RuntimeError):
+            show(outcome.folder)
 
 
 def _finished(done: job.Job) -> None:
