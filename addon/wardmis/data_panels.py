@@ -29,7 +29,11 @@ class WARDMIS_OBJECT_PT_visibility(Panel, bpy.types.Panel):
         shown.prop(obj, "hide_viewport", text="Viewports", toggle=False, invert_checkbox=True)
         shown.prop(obj, "hide_render", text="Renders", toggle=False, invert_checkbox=True)
         if obj.type in SURFACES:
-            column.column(heading="Mask").prop(obj, "is_holdout", text="Holdout")
+            mask = column.column(heading="Mask")
+            mask.prop(obj, "is_shadow_catcher", text="Shadow Catcher")
+            mask.prop(obj, "is_holdout", text="Holdout")
+        elif obj.type == "LIGHT":
+            column.column(heading="Mask").prop(obj, "is_shadow_catcher", text="Shadow Catcher")
 
 
 class WARDMIS_OBJECT_PT_ray_visibility(Panel, bpy.types.Panel):

@@ -3,6 +3,7 @@
 // the image does not depend on the number of threads.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -59,6 +60,15 @@ struct LightPixel {
   Sums direct{}, indirect{}, color{};
 };
 
+// Of a pixel where the camera may meet shadow catchers first. Their light is no part of the picture, but by how much it
+// is less than where nothing but catchers is (as in Cycles): a quotient, so of what the samples bring sums are kept.
+struct CatcherPixel {
+  std::array<double, 3> light{}, alone{};  // that catchers send, of Pixel::sum; and where they are alone
+  std::array<double, 3> sky{};  // that is seen, or would be behind catchers; of a film that is not transparent
+  double covered = 0;           // samples, by what else than catchers they see
+  uint32_t caught = 0;          // samples that see catchers
+};
+
 struct FilmBuffer {
   int width = 0, height = 0;  // of the border; row 0 is the bottom row
   std::vector<Pixel> pixels;
@@ -68,6 +78,8 @@ struct FilmBuffer {
   std::vector<uint32_t> elsewhere;     // of the samples, those on other surfaces than the pixel's own
   std::vector<DataPixel> data;         // of each pixel; empty where no pass wants it
   std::vector<LightPixel> light;       // likewise
+  std::vector<CatcherPixel> catchers;  // of each pixel; empty where there are none
+  bool transparent = false;            // without the sky
   uint32_t samples = 0;                // camera samples that every pixel has
 
   FilmBuffer() = default;
@@ -89,6 +101,26 @@ struct FilmBuffer {
   Rgb mean(const Pixel& p) const {
     const double s = samples > 0 ? 1.0 / samples : 0;
     return {static_cast<float>(p.sum[0] * s), static_cast<float>(p.sum[1] * s), static_cast<float>(p.sum[2] * s)};
+  }
+  // The picture: colour, which alpha is in already, and alpha.
+  std::array<float, 4> combined(size_t index) const {
+    const Pixel& p = pixels[index];
+    const Rgb c = mean(p);
+    const double alpha = samples > 0 ? double(p.alpha) / samples : 0;
+    if (catchers.empty() || samples == 0) return {c.x, c.y, c.z, static_cast<float>(alpha)};
+    const CatcherPixel& k = catchers[index];
+    const double covered = std::clamp(k.covered / samples, 0.0, 1.0);
+    double lit = 1;
+    if (k.caught > 0) {
+      lit = 0;
+      for (size_t i = 0; i < 3; ++i) lit += (k.alone[i] != 0 ? k.light[i] / k.alone[i] : 1) / 3;
+      lit = 1 + std::clamp(alpha, 0.0, 1.0) * (lit - 1);
+    }
+    const double shown = covered + (1 - covered) * (1 - std::clamp(lit, 0.0, 1.0)), sky = transparent ? 0 : 1 - shown;
+    const auto channel = [&](size_t i) {
+      return static_cast<float>((p.sum[i] - k.light[i] + sky * k.sky[i]) / samples);
+    };
+    return {channel(0), channel(1), channel(2), transparent ? static_cast<float>(shown) : 1.0f};
   }
   // Variance of the mean, from the samples as if they were independent; 0 with fewer than two samples.
   Rgb variance(const Pixel& p) const {

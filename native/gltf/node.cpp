@@ -138,9 +138,9 @@ std::shared_ptr<const std::vector<Affine>> motionOf(const Json& node, const Affi
   return motion;
 }
 
-bool isHoldout(const Json& node) {
+bool hasMark(const Json& node, std::string_view name) {
   const auto extension = node.extension(kExtension);
-  return extension && extension->booleanOr("holdout", false);
+  return extension && extension->booleanOr(name, false);
 }
 
 uint8_t visibility(const Json& node) {
@@ -280,7 +280,8 @@ void readNodes(const Json& root, Accessors& accessors, Buffers& buffers, Materia
                           mesh,
                           forest.world(i),
                           visibility(node),
-                          isHoldout(node),
+                          hasMark(node, "holdout"),
+                          hasMark(node, "shadowCatcher"),
                           objectData(node),
                           motionOf(node, forest.parent(i))};
         if (const auto many = node.extension("EXT_mesh_gpu_instancing")) {

@@ -12,6 +12,7 @@ namespace wardmis {
 template <size_t K>
 struct KernelInput {
   const RenderScene& scene;
+  const RenderScene* catchers;  // the shadow catchers alone; null: there are none
   const CameraRays& camera;
   const PixelFilter& filter;
   const Sampler& sampler;
@@ -24,8 +25,6 @@ struct KernelInput {
   SampleCost<K> cost;                   // for `auto`
   int samplesPerHit;
   PathLimits limits;
-  bool lights;             // the light technique has something to aim at
-  bool surfaceRays;        // rays of the surface's techniques can find light
   const Shutter* shutter;  // null: nothing moves
   float least;             // that a sample may be: 0, unless a light is negative
   int x0, y0;              // of the border in the full frame

@@ -19,24 +19,25 @@ constexpr uint64_t kWritten = (17 + K) * sizeof(float);
 constexpr uint64_t kData = sizeof(DataPixel) + 14 * sizeof(float), kLight = sizeof(LightPixel) + 27 * sizeof(float);
 
 template <size_t K>
-uint64_t bytesPerPixelWith(const RenderSettings& s) {
+uint64_t bytesPerPixelWith(const RenderSettings& s, bool catchers) {
   constexpr uint64_t kFilm = sizeof(Pixel) + 2 * K * sizeof(uint32_t) + sizeof(PixelSurface);
-  const uint64_t written = kFilm + kWritten<K> + (s.data ? kData : 0) + (s.light ? kLight : 0);
+  const uint64_t kept = kFilm + (catchers ? sizeof(CatcherPixel) : 0);
+  const uint64_t written = kept + kWritten<K> + (s.data ? kData : 0) + (s.light ? kLight : 0);
   if (s.allocation == Allocation::kAuto)  // its pilot is over before there is a film
     return std::max(written, (kFilm + sizeof(PilotPixel) + sizeof(CandidateSums<K>) + sizeof(PixelFractions<K>)) /
                                  (kCoarse * kCoarse));
   if (!needsMoments(s.allocation)) return written;
-  return std::max<uint64_t>(written, kFilm + sizeof(PilotPixel) + sizeof(HitMoments<K>) + sizeof(PixelFractions<K>));
+  return std::max<uint64_t>(written, kept + sizeof(PilotPixel) + sizeof(HitMoments<K>) + sizeof(PixelFractions<K>));
 }
 
 }  // namespace
 
-uint64_t bytesPerPixel(const RenderSettings& s, size_t lobes) {
-  return withTechniques(lobes, [&](auto k) { return bytesPerPixelWith<k()>(s); });
+uint64_t bytesPerPixel(const RenderSettings& s, size_t lobes, bool catchers) {
+  return withTechniques(lobes, [&](auto k) { return bytesPerPixelWith<k()>(s, catchers); });
 }
 
-void requireMemory(int width, int height, const RenderSettings& s, size_t lobes) {
-  const uint64_t each = bytesPerPixel(s, lobes);
+void requireMemory(int width, int height, const RenderSettings& s, size_t lobes, bool catchers) {
+  const uint64_t each = bytesPerPixel(s, lobes, catchers);
   const uint64_t pixels = static_cast<uint64_t>(width) * static_cast<uint64_t>(height);
   const double needed = double(pixels) * double(each), available = double(availableMemory());
   if (needed <= available) return;

@@ -6,11 +6,11 @@
 
 namespace wardmis {
 
-// lobes: that a surface may have.
-// Of the largest moment of a render: the film with the pilot, or with the passes that are written.
-uint64_t bytesPerPixel(const RenderSettings& settings, size_t lobes);
+// Of the largest moment of a render: the film with the pilot, or with the passes that are written. lobes: that a
+// surface may have; catchers: whether there are shadow catchers.
+uint64_t bytesPerPixel(const RenderSettings& settings, size_t lobes, bool catchers = false);
 
 // Throws Error (memory), with the numbers, where a frame does not fit.
-void requireMemory(int width, int height, const RenderSettings& settings, size_t lobes);
+void requireMemory(int width, int height, const RenderSettings& settings, size_t lobes, bool catchers);
 
 }  // namespace wardmis

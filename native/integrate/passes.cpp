@@ -19,12 +19,7 @@ struct PassSource {
 
 const std::vector<PassSource>& sources() {
   static const std::vector<PassSource> all = {
-      {{"Combined", "RGBA", "combined"},
-       [](const FilmBuffer& f, size_t i) -> Value {
-         const Pixel& p = f.pixels[i];
-         const Rgb c = f.mean(p);
-         return {c.x, c.y, c.z, f.samples > 0 ? p.alpha / static_cast<float>(f.samples) : 0};
-       }},
+      {{"Combined", "RGBA", "combined"}, [](const FilmBuffer& f, size_t i) -> Value { return f.combined(i); }},
       {{"Depth", "Z", "depth"},
        [](const FilmBuffer& f, size_t i) -> Value {
          return {f.pixels[i].depth, 0, 0, 0};

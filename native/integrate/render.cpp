@@ -187,7 +187,7 @@ template <size_t K>
 FilmBuffer renderWith(const BuiltScene& built, const RenderSettings& settings, Statistics& stats,
                       const RenderObserver& observer) {
   const Film& frame = built.scene.film;
-  requireMemory(frame.x1 - frame.x0, frame.y1 - frame.y0, settings, built.lobes());
+  requireMemory(frame.x1 - frame.x0, frame.y1 - frame.y0, settings, built.lobes(), built.catchers != nullptr);
   RenderSetup<K> setup(built, settings);
   stats.buildSeconds = built.seconds;
   stats.needs = setup.needs;
@@ -248,6 +248,7 @@ FilmBuffer renderWith(const BuiltScene& built, const RenderSettings& settings, S
   buffer = setup.film();
   if (settings.data) buffer.data.resize(buffer.pixels.size());
   if (settings.light) buffer.light.resize(buffer.pixels.size());
+  if (built.catchers) buffer.catchers.resize(buffer.pixels.size());
   run.onto(buffer, stats.allocated && coarse(settings) ? pilotSpp : 0);
   if (stats.allocated && !coarse(settings)) {
     stats.pilotKept = true;

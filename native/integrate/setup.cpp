@@ -29,8 +29,7 @@ const Scene& renderable(const Scene& scene) {
 int tilesAcross(int pixels) { return (pixels + kTileSize - 1) / kTileSize; }
 
 // Whether rays of the surface's techniques can find light.
-bool surfaceRays(const BuiltScene& built, uint32_t needs) {
-  const Emitters& e = built.emitters;
+bool surfaceRays(const Emitters& e, uint32_t needs) {
   return e.anyShared() || e.anySky() || e.anyStrands() || (needs & kNeedsBounces) != 0;
 }
 
@@ -63,7 +62,7 @@ template <size_t K>
 TechniqueMask techniquesOf(const BuiltScene& built, uint32_t needs) {
   TechniqueMask mask = 0;
   if (built.emitters.any()) mask |= maskOf(Techniques<K>::kLight);
-  if (!surfaceRays(built, needs)) return mask;
+  if (!surfaceRays(built.emitters, needs)) return mask;
   if ((needs & kNeedsSpecular) != 0)
     for (size_t l = 0; l < built.geometry.lobes.used(); ++l) mask |= maskOf(l);
   if ((needs & kNeedsDiffuse) != 0) mask |= maskOf(Techniques<K>::kCosine);
@@ -84,6 +83,13 @@ SampleCost<K> givenCost(const GivenCost& given) {
   return cost;
 }
 
+std::optional<RenderScene> alone(const BuiltScene& built, const RenderScene& world, uint32_t needs) {
+  if (!built.catchers) return std::nullopt;
+  const BuiltScene::Catchers& c = *built.catchers;
+  return RenderScene{world.scene,           c.geometry,        c.accel, c.emitters, surfaceRays(c.emitters, needs),
+                     world.mostTransparent, world.mostFollowed};
+}
+
 // How many surfaces rays pass that are no shadow rays: up to version 4 one more than these, since 5 as many, but always
 // one.
 int mostFollowed(const Scene& scene, int mostTransparent) {
@@ -102,8 +108,16 @@ BuiltScene::BuiltScene(const Scene& s, int threads)
       environments(environmentsOf(s)),
       emitters(s, geometry, environments),
       accel(geometry, threads) {
+  const auto catches = [](const Placement& p) { return p.shadowCatcher; };
+  if (std::any_of(geometry.placements.begin(), geometry.placements.end(), catches)) {
+    catchers = std::make_unique<Catchers>(scene, environments, threads);
+    catchers->geometry.lobes = geometry.lobes;
+  }
   seconds = wallSeconds() - seconds;
 }
+
+BuiltScene::Catchers::Catchers(const Scene& scene, const std::vector<Environment>& environments, int threads)
+    : geometry(scene, true), emitters(scene, geometry, environments, true), accel(geometry, threads) {}
 
 std::vector<std::string> BuiltScene::techniqueNames() const {
   return withTechniques(lobes(), [&](auto k) {
@@ -141,14 +155,17 @@ RenderSetup<K>::RenderSetup(const BuiltScene& built, const RenderSettings& s)
              built.geometry,
              built.accel,
              built.emitters,
+             surfaceRays(built.emitters, needs),
              (needs & kNeedsTransparency) != 0 ? s.maxTransparent : 0,
              mostFollowed(built.scene, s.maxTransparent)},
+      catchers_(alone(built, world_, needs)),
       camera_(*built.scene.camera, built.scene.film),
       shutter_(built.scene.film.shutter.open, built.scene.film.shutter.rolling),
       filter_(built.scene.film.filter, built.scene.film.filterWidth),
       sampler_(s.sampler, s.seed, s.seconds > 0 ? 64 : s.spp),
       candidates_(s.samplesPerHit),
       input{world_,
+            catchers_ ? &*catchers_ : nullptr,
             camera_,
             filter_,
             sampler_,
@@ -161,8 +178,6 @@ RenderSetup<K>::RenderSetup(const BuiltScene& built, const RenderSettings& s)
             givenCost<K>(s.cost),
             s.samplesPerHit,
             s.limits(),
-            built.emitters.any(),
-            surfaceRays(built, needs),
             built.geometry.moves() || camera_.moves() ? &shutter_ : nullptr,
             negativeLight(built.scene) ? -3.4e38f : 0.0f,
             built.scene.film.x0,
@@ -172,7 +187,9 @@ RenderSetup<K>::RenderSetup(const BuiltScene& built, const RenderSettings& s)
 template <size_t K>
 FilmBuffer RenderSetup<K>::film(int side) const {
   const Film& f = world_.scene.film;
-  return {(f.x1 - f.x0 + side - 1) / side, (f.y1 - f.y0 + side - 1) / side, K};
+  FilmBuffer film((f.x1 - f.x0 + side - 1) / side, (f.y1 - f.y0 + side - 1) / side, K);
+  film.transparent = f.transparent;
+  return film;
 }
 
 int tilesOf(const FilmBuffer& film) { return tilesAcross(film.width) * tilesAcross(film.height); }

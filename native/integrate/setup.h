@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,15 @@ struct BuiltScene {
   std::vector<Environment> environments;
   Emitters emitters;
   Accel accel;
+  // What shadow catchers are where nothing else is, which their shadows are measured by.
+  struct Catchers {
+    Catchers(const Scene& scene, const std::vector<Environment>& environments, int threads);
+
+    Geometry geometry;
+    Emitters emitters;
+    Accel accel;
+  };
+  std::unique_ptr<Catchers> catchers;  // null: there are none
 
   size_t lobes() const { return geometry.lobes.most; }  // of a surface, as far as each has a technique of its own
   std::vector<std::string> techniqueNames() const;      // in what is written
@@ -49,6 +59,7 @@ struct RenderSetup {
 
  private:
   RenderScene world_;
+  std::optional<RenderScene> catchers_;
   CameraRays camera_;
   Shutter shutter_;
   PixelFilter filter_;

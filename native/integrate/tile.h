@@ -26,14 +26,21 @@ template <class X>
 
 inline constexpr uint32_t kElsewhere = 0x656c7365u;  // sets apart a pixel's points on other surfaces than its own
 
-// Radiance along one camera ray. data, light: null where they are not wanted. taken: the pixel's samples of each
-// technique so far; elsewhere: of these, on other surfaces than its own.
+// Of a sample whose camera ray meets a shadow catcher first.
+struct CatcherSample {
+  bool caught = false;
+  Rgb before{0, 0, 0};   // what is seen before it
+  Rgb through{1, 1, 1};  // what surfaces before it let through
+  Rgb sky{0, 0, 0};      // behind it, or where there is nothing
+};
+
+// Radiance along one camera ray of a world. data, light, catcher: null where they are not wanted. taken: the pixel's
+// samples of each technique so far; elsewhere: of these, on other surfaces than its own.
 template <uint32_t N, size_t K>
-Rgb cameraSample(const KernelInput<K>& in, const Ray& camera, uint32_t pixelKey, uint32_t sample,
-                 const PixelFractions<K>* allocated, Pixel& pixel, DataPixel* data, LightPixel* light, uint32_t* taken,
-                 uint32_t* elsewhere, PixelSurface& own, PilotPixel* pilot, HitMoments<K>* moments,
-                 CandidateSums<K>* candidates, Counts& counts) {
-  const RenderScene& world = in.scene;
+Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& camera, uint32_t pixelKey,
+                 uint32_t sample, const PixelFractions<K>* allocated, Pixel& pixel, DataPixel* data, LightPixel* light,
+                 CatcherSample* catcher, uint32_t* taken, uint32_t* elsewhere, PixelSurface& own, PilotPixel* pilot,
+                 HitMoments<K>* moments, CandidateSums<K>* candidates, Counts& counts) {
   ++counts.cameraRays;
   const bool transparent = world.scene.film.transparent;
   const float exposure = world.scene.film.exposure;
@@ -52,7 +59,19 @@ Rgb cameraSample(const KernelInput<K>& in, const Ray& camera, uint32_t pixelKey,
     world.emitters.along(ray, ray.tMin, true, 0, [&](const EmitterHit& e) {
       if (e.sky) DataPixel::add(data->environment, e.radiance * seenThrough * exposure);
     });
-  if (hit.valid() && world.geometry.placements[hit.placement].holdout) return sum;
+  const Placement* const met = hit.valid() ? &world.geometry.placements[hit.placement] : nullptr;
+  if (catcher != nullptr) [[unlikely]] {
+    *catcher = {met != nullptr && met->shadowCatcher && !met->holdout, sum, seenThrough, {}};
+    if (!transparent && (catcher->caught || met == nullptr))
+      world.emitters.along(ray, ray.tMin, true, 0, [&](const EmitterHit& e) {
+        if (e.sky) catcher->sky += e.radiance * seenThrough;
+      });
+    if (catcher->caught) {  // as Cycles has it
+      if (data != nullptr) DataPixel::add(data->environment, catcher->sky * exposure);
+      light = nullptr;
+    }
+  }
+  if (met != nullptr && met->holdout) return sum;
   pixel.alpha += covered || hit.valid() ? 1.0f : 0.0f;
   if (!hit.valid()) return sum;
 
@@ -76,7 +95,7 @@ Rgb cameraSample(const KernelInput<K>& in, const Ray& camera, uint32_t pixelKey,
   };
   if (light != nullptr) [[unlikely]]
     addLight(light->color, s.colors(), seenThrough);
-  const TechniqueMask mask = techniquesAt<K>(s, in.lights, in.surfaceRays);
+  const TechniqueMask mask = techniquesAt<K>(s, world.emitters.any(), world.surfaceRays);
   const PixelSurface surface{x.frame.z, x.material, x.placement};
   if (pilot != nullptr && pilot->surface.material < 0) pilot->surface = surface, pilot->techniques = mask;
 
@@ -149,6 +168,30 @@ Rgb cameraSample(const KernelInput<K>& in, const Ray& camera, uint32_t pixelKey,
   return sum;
 }
 
+// Adds to a pixel's sums what `value`, of a camera sample that is told in `seen`, is with shadow catchers. again: the
+// same sample where they are alone; writes what it is told.
+template <class Again>
+[[gnu::noinline]] void addCatchers(CatcherPixel& sums, Rgb value, float exposure, float alpha,
+                                   const CatcherSample& seen, const Again& again) {
+  DataPixel::add(sums.sky, seen.sky * exposure);
+  if (!seen.caught) {
+    sums.covered += double(alpha);
+    return;
+  }
+  const Rgb through = seen.through;
+  sums.covered += 1 - double(through.x + through.y + through.z) / 3;
+  ++sums.caught;
+  DataPixel::add(sums.light, value - seen.before * exposure);
+  CatcherSample alone;
+  const Rgb without = again(alone);
+  const auto part = [](float a, float b) { return b != 0 ? a / b : 0; };
+  const Rgb unseen = alone.through;
+  if (alone.caught)
+    DataPixel::add(sums.alone,
+                   (without - alone.before) * exposure *
+                       Rgb{part(through.x, unseen.x), part(through.y, unseen.y), part(through.z, unseen.z)});
+}
+
 template <uint32_t N, size_t K>
 void renderTile(const KernelInput<K>& in, const Tile& tile, FilmBuffer& film, Pilot<K>* pilot, Counts& counts) {
   const float exposure = in.scene.scene.film.exposure, height = static_cast<float>(in.scene.scene.film.height);
@@ -179,11 +222,30 @@ void renderTile(const KernelInput<K>& in, const Tile& tile, FilmBuffer& film, Pi
           pixel.add({0, 0, 0});
           continue;
         }
-        const Rgb value =
-            cameraSample<N, K>(in, ray, key, s, allocated, pixel, data, light, &film.sampleCounts[index * K],
-                               &film.elsewhere[index * K], film.own[index], pilotPixel, moments, candidates, counts) *
-            exposure;
-        if (counts.rare.admit(value, in.least)) pixel.add(value);
+        uint32_t* const taken = &film.sampleCounts[index * K];
+        uint32_t* const elsewhere = &film.elsewhere[index * K];
+        if (film.catchers.empty()) [[likely]] {
+          const Rgb value = cameraSample<N, K>(in, in.scene, ray, key, s, allocated, pixel, data, light, nullptr, taken,
+                                               elsewhere, film.own[index], pilotPixel, moments, candidates, counts) *
+                            exposure;
+          if (counts.rare.admit(value, in.least)) pixel.add(value);
+          continue;
+        }
+        // the same points in both worlds, so that where catchers have no shadow the quotient is 1
+        Pixel again = pixel;
+        std::array<uint32_t, K> takenAgain, elsewhereAgain;
+        std::copy_n(taken, K, takenAgain.begin()), std::copy_n(elsewhere, K, elsewhereAgain.begin());
+        CatcherSample seen;
+        const Rgb value = cameraSample<N, K>(in, in.scene, ray, key, s, allocated, pixel, data, light, &seen, taken,
+                                             elsewhere, film.own[index], pilotPixel, moments, candidates, counts) *
+                          exposure;
+        if (!counts.rare.admit(value, in.least)) continue;
+        pixel.add(value);
+        addCatchers(film.catchers[index], value, exposure, pixel.alpha - again.alpha, seen, [&](CatcherSample& alone) {
+          return cameraSample<N, K>(in, *in.catchers, ray, key, s, allocated, again, nullptr, nullptr, &alone,
+                                    takenAgain.data(), elsewhereAgain.data(), film.own[index], nullptr, nullptr,
+                                    nullptr, counts);
+        });
       }
     }
 }

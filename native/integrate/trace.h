@@ -15,6 +15,7 @@ struct RenderScene {
   const Geometry& geometry;
   const Accel& accel;
   const Emitters& emitters;
+  bool surfaceRays;  // rays of the surfaces' techniques can find light
   // Surfaces that a path passes straight, all its rays together, and a shadow ray from there, to which the next one is
   // opaque. 0 also where no surface lets light through.
   int mostTransparent = 0;

@@ -136,8 +136,8 @@ RgbImage toRgb(const FilmBuffer& film) {
   float* to = image.rgb.data();
   for (int y = film.height - 1; y >= 0; --y)
     for (int x = 0; x < film.width; ++x) {
-      const Rgb c = film.mean(film.at(x, y));
-      *to++ = c.x, *to++ = c.y, *to++ = c.z;
+      const auto c = film.combined(static_cast<size_t>(y) * static_cast<size_t>(film.width) + static_cast<size_t>(x));
+      *to++ = c[0], *to++ = c[1], *to++ = c[2];
     }
   return image;
 }

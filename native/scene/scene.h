@@ -142,6 +142,7 @@ struct Instance {
   Affine toWorld;
   uint8_t visibility = kSeenByAll;
   bool holdout = false;                               // the camera sees a hole there
+  bool shadowCatcher = false;                         // the camera sees its shadows alone: CatcherPixel in film.h
   std::shared_ptr<const ObjectData> object;           // null: as it is by default
   std::shared_ptr<const std::vector<Affine>> motion;  // toWorld at equal steps of the shutter's time; null: it stands
 };
@@ -166,6 +167,7 @@ struct Light {
   bool cosine = false;
   uint8_t visibility = kSeenByAll;
   bool shadow = true;
+  bool onCatchers = true;  // shadow catchers have its light also where they are alone
   int maxBounces = 1024;  // it lights surfaces that a path has reached by at most so many
   std::shared_ptr<const Program> program;
   int result = -1;  // index into Program::results: what `emitted` is multiplied by where the light is looked at

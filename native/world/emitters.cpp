@@ -105,13 +105,14 @@ class TriangleLuminance {
 
 }  // namespace
 
-Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Environment>& environments)
+Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Environment>& environments,
+                   bool catchersAlone)
     : scene_(scene), geometry_(geometry), environments_(environments) {
   const float crossSection = kPif * geometry.radius() * geometry.radius();
   std::vector<double> power;
 
   for (const Light& light : scene.lights) {
-    if (isBlack(light.emitted)) continue;
+    if (isBlack(light.emitted) || (catchersAlone && !light.onCatchers)) continue;
     Lamp l{};
     l.emitted = light.emitted;
     l.visibility = translucence(light.visibility, kSeenByDiffuse);

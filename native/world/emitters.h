@@ -44,8 +44,9 @@ struct EmitterHit {
 
 class Emitters {
  public:
-  // Fills Placement::firstEmitter.
-  Emitters(const Scene& scene, Geometry& geometry, const std::vector<Environment>& environments);
+  // Fills Placement::firstEmitter. catchersAlone: what lights the world of Geometry's shadow catchers.
+  Emitters(const Scene& scene, Geometry& geometry, const std::vector<Environment>& environments,
+           bool catchersAlone = false);
 
   bool any() const { return !table_.empty(); }
   // Emitters that the surface's techniques meet too, and emitters that they cannot (delta lights, lights without

@@ -60,7 +60,7 @@ bool hasStrands(const Mesh& mesh) {
 
 }  // namespace
 
-Geometry::Geometry(const Scene& scene) {
+Geometry::Geometry(const Scene& scene, bool catchersAlone) {
   std::vector<uint32_t> uses(scene.meshes.size(), 0);
   for (const Instance& i : scene.instances) ++uses[static_cast<size_t>(i.mesh)];
 
@@ -103,6 +103,10 @@ Geometry::Geometry(const Scene& scene) {
   placements.reserve(scene.instances.size());
   for (const Instance& instance : scene.instances) {
     const auto m = static_cast<size_t>(instance.mesh);
+    if (catchersAlone && !instance.shadowCatcher) {
+      placements.emplace_back().flat = true;
+      continue;
+    }
     const bool flat = uses[m] == 1 && !instance.motion && !deforms(scene.meshes[m]) &&
                       (!hasStrands(scene.meshes[m]) || keepsRound(instance.toWorld));
     auto& [first, count] = sharedShapes[m];
@@ -112,7 +116,7 @@ Geometry::Geometry(const Scene& scene) {
       count = static_cast<uint32_t>(shapes.size()) - first;
     }
     if (count == 0) continue;
-    placements.push_back({instance.toWorld, instance.mesh, first, count, instance.holdout, flat,
+    placements.push_back({instance.toWorld, instance.mesh, first, count, instance.holdout, instance.shadowCatcher, flat,
                           translucence(instance.visibility, kSeenByTransmission), 0, &instance.name,
                           instance.object.get(), instance.motion ? &frames.emplace_back(*instance.motion) : nullptr});
     for (uint32_t s = first; s < first + count; ++s) {

@@ -46,6 +46,7 @@ struct Placement {
   int mesh = 0;
   uint32_t firstShape = 0, shapes = 0;  // into Geometry::shapes
   bool holdout = false;                 // the camera sees a hole there
+  bool shadowCatcher = false;           // the camera sees its shadows alone
   bool flat = false;                    // shapes' positions are in world space already
   uint8_t visibility = kSeenByAll;
   uint32_t firstEmitter = 0;  // of its emissive triangles
@@ -80,7 +81,8 @@ struct Geometry {
   uint64_t triangles = 0, segments = 0, spheres = 0;  // placed, instances counted
   Vec3f lower{0, 0, 0}, upper{0, 0, 0};               // bounds, world space
 
-  explicit Geometry(const Scene& scene);
+  // catchersAlone: of the shadow catchers; the other placements are there, and have no shapes.
+  explicit Geometry(const Scene& scene, bool catchersAlone = false);
   Vec3f center() const { return (lower + upper) * 0.5f; }
   float radius() const { return std::max(length(upper - lower) * 0.5f, 1e-6f); }
 

@@ -350,7 +350,9 @@ class SecondBlender(PanelTest):
         self.assertEqual(list(temporary.kept("comparison").iterdir()), [])
 
     def test_its_warnings_are_seen_in_the_first(self):
-        self.floor.is_shadow_catcher = True
+        tree = self.floor.data.materials[0].node_tree
+        toon = tree.nodes.new("ShaderNodeBsdfToon")
+        tree.links.new(toon.outputs[0], tree.get_output_node("ALL").inputs["Surface"])
         self.folder.mkdir()
         quiet = mock.patch.object(warnings, "_tell", lambda _text: None)
         quiet.start()
@@ -361,7 +363,7 @@ class SecondBlender(PanelTest):
             warnings.begin(*place)
             export()
             found = {warning.text: warning.owner for warning in warnings.of_scene(self.scene)}
-            about = [text for text in found if "shadow catchers are not supported" in text]
+            about = [text for text in found if "Toon" in text]
             self.assertEqual([found[text] for text in about], ["Floor"], found)
 
     def test_failures_are_told(self):

@@ -446,6 +446,21 @@ class Visibility(SceneTest):
         self.assertEqual([i.name for i in scene.instances if i.holdout], ["Holdout"])
         self.assertEqual(scene.notes, [])
 
+    def test_shadow_catchers(self):
+        """Of themselves, or by what instances them; lamps are marked that are none."""
+        self.add_quad("Other")
+        self.add_quad("Catcher").is_shadow_catcher = True
+        inner = bpy.data.collections.new("Inner")
+        self.add("Inside", self.add_quad("Data").data, inner)
+        empty = self.add("Empty", None)
+        empty.instance_type, empty.instance_collection, empty.is_shadow_catcher = "COLLECTION", inner, True
+        self.add("Usual", bpy.data.lights.new("Usual", "POINT"))
+        self.add("Added", bpy.data.lights.new("Added", "POINT")).is_shadow_catcher = False
+        scene = self.gather()
+        self.assertEqual([i.name for i in scene.instances if i.shadow_catcher], ["Catcher", "Inside"])
+        self.assertEqual([light.name for light in scene.lights if not light.on_catchers], ["Added"])
+        self.assertEqual(scene.notes, [])
+
     def test_light_linking_is_noted(self):
         quad = self.add_quad()
         if not hasattr(quad, "light_linking"):

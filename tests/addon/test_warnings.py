@@ -120,7 +120,7 @@ class Shown(SceneTest):
     def test_each_names_its_object(self):
         first, second = self.add_quad("It's a 'quad'"), self.add_quad("Second")
         self.glass(first)
-        second.is_shadow_catcher = True
+        self.glass(second)
         lamp = self.add("Lamp", bpy.data.lights.new("Data of the lamp", "POINT"))
         lamp.data.energy = -1
         found = {warning.owner: warning.text for warning in self.export()}

@@ -318,7 +318,8 @@ class _Encoder:
         groups: dict[tuple[Any, ...], list[InstanceData]] = {}
         for instance in instances:
             key = (instance.mesh, instance.hidden_from, instance.color, instance.index, instance.random)
-            alone_by = id(instance) if instance.motion else instance.holdout  # what moves has a node of its own
+            # what moves has a node of its own
+            alone_by = id(instance) if instance.motion else (instance.holdout, instance.shadow_catcher)
             groups.setdefault((*key, instance.attributes, alone_by), []).append(instance)
         nodes = []
         for (mesh, *_), members in groups.items():
@@ -438,6 +439,8 @@ def _node_extension(instance: InstanceData, mesh: MeshData) -> dict[str, Any]:
         result["motion"] = [_column_major(matrix) for matrix in instance.motion]
     if instance.holdout:
         result["holdout"] = True
+    if instance.shadow_catcher:
+        result["shadowCatcher"] = True
     if instance.random:
         result["random"] = instance.random
     if instance.attributes:
@@ -526,6 +529,8 @@ def _light(light: LightData) -> dict[str, Any]:
         "shadow": light.shadow,
         "maxBounces": light.max_bounces,
     }
+    if not light.on_catchers:
+        result["onCatchers"] = False
     if light.type == "area":
         result |= {"shape": light.shape, "size": list(light.size), "radiance": light.emission, "spread": light.spread}
     elif light.type == "sun":

@@ -204,6 +204,7 @@ class InstanceData:
     attributes: tuple[tuple[str, tuple[float, ...]], ...] = ()  # of the object, not the mesh
     motion: list[np.ndarray] = field(default_factory=list)  # `matrix` at equal steps of the shutter's time
     holdout: bool = False
+    shadow_catcher: bool = False
 
 
 VISIBILITY = ("camera", "diffuse", "glossy", "transmission", "shadow")
@@ -228,6 +229,7 @@ class LightData:
     blend: float = 0.0  # spot
     cosine: bool = False  # spot
     shadow: bool = True
+    on_catchers: bool = True
     max_bounces: int = 1024  # of paths whose surfaces it lights
     hidden_from: frozenset[str] = frozenset()
     program: ProgramData | None = None  # the light is multiplied by its value `result`

@@ -198,6 +198,7 @@ class _Gatherer:
                 matrix, hidden = self._matrix(instance), self._hidden_from(obj, instance)
                 light = export_light(obj.data, obj.name, matrix, hidden, self.context, _lamp_object(obj, instance))
                 if light is not None:
+                    light.on_catchers = obj.original.is_shadow_catcher
                     self.lights.append(light)
             elif kind not in SEEN_AS_MESHES | DRAWN_BY_BLENDER:
                 self.context.note(f"object '{obj.name}': {kind.lower()} objects are not supported; it is left out")
@@ -273,11 +274,14 @@ class _Gatherer:
             self._mesh_index[key] = self._add_mesh(instance, kind, source, materials, gather)
         index = self._mesh_index[key]
         if index is not None:
-            self._note_compositing(obj.original)
             hidden = self._hidden_from(obj, instance)
             if len(hidden) < len(VISIBILITY):
                 data = InstanceData(obj.name, index, self._matrix(instance), hidden)
                 data.holdout = bool(obj.original.is_holdout or obj.original.holdout_get(view_layer=self.view_layer))
+                by_instancer = (
+                    instance.is_instance and instance.parent is not None and instance.parent.is_shadow_catcher
+                )
+                data.shadow_catcher = obj.original.is_shadow_catcher or by_instancer
                 self._describe(data, obj, instance, materials)
                 self.instances.append(data)
                 if self.motion is not None:
@@ -368,12 +372,6 @@ class _Gatherer:
                 hidden.add("camera")
             self._hidden[key] = frozenset(hidden)
         return self._hidden[key]
-
-    def _note_compositing(self, original: Any) -> None:
-        if original.is_shadow_catcher:
-            self.context.note(
-                f"object '{original.name}': shadow catchers are not supported; it is rendered as any other object"
-            )
 
     def _note_light_linking(self, original: Any) -> None:
         linking = getattr(original, "light_linking", None)
