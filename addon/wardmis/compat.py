@@ -115,6 +115,10 @@ def shading(mesh: Any) -> str:
     return "POINT"
 
 
+# Cycles rounds normals to them, which moves them by up to 5e-5.
+NORMALS_HAVE_32_BITS = VERSION >= (5, 2, 0)
+
+
 def vertex_normals(mesh: Any) -> np.ndarray:
     """(n, 3) float32."""
     return _foreach(mesh.vertex_normals, "vector", 3, np.float32)
@@ -291,8 +295,10 @@ def motion_settings(obj: Any) -> Any:
 
 # Whose formulas this Blender's Cycles has: 3.4's (3), 4.3's (4) or 5.2's (5), which docs/scene-format.md calls `version`.
 CYCLES = 3 if VERSION < (4, 0, 0) else 4 if VERSION < (5, 0, 0) else 5
+NORMAL_MAP = CYCLES if VERSION < (5, 0, 0) or VERSION >= (5, 1, 0) else 4
 MAGIC = 4 if VERSION < (5, 2, 0) else 5
 BRICK = 3 if VERSION < (3, 5, 0) else 5
+RAMP_STEPS = 255 if VERSION < (4, 0, 0) else 256  # of the tables that Cycles makes of colour ramps and curves
 
 # Cycles is given trees without groups, reroutes and muted nodes, which convert nothing any more.
 NODE_TREES_ARE_INLINED = VERSION >= (5, 0, 0)

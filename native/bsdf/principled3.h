@@ -4,6 +4,7 @@
 #pragma once
 
 #include "bsdf/closure.h"
+#include "math/rec709.h"
 
 namespace wardmis {
 
@@ -92,7 +93,7 @@ inline void expand(const Principled3& p, Rgb weight, float cosBase, float cosCoa
     addLobe(3, l, add);
     l = Lobe{};
     l.kind = LobeKind::kSchlickSheen;
-    l.weight = weight * hueOf(p.baseColor, luminance(p.baseColor), p.sheenTint) *
+    l.weight = weight * hueOf(p.baseColor, rec709::luminance(p.baseColor, 3), p.sheenTint) *
                (p.sheen > kLeastWeight ? p.sheen * diffuse : 0);
     addLobe(3, l, add);
   }

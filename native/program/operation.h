@@ -183,7 +183,7 @@ inline constexpr std::array brick{
   X(kTransmissionDepth, "transmission-depth", kNumber, "", none, kReadsRay) \
   /* conversions */ \
   X(kVectorOf, "vector", kVector, "n", none, kReadsNothing) \
-  X(kLuminance, "luminance", kNumber, "v", none, kReadsNothing) \
+  X(kLuminance, "luminance", kNumber, "v", version, kReadsNothing) \
   X(kMean, "mean", kNumber, "v", none, kReadsNothing) \
   X(kX, "x", kNumber, "v", none, kReadsNothing) \
   X(kY, "y", kNumber, "v", none, kReadsNothing) \
@@ -320,8 +320,8 @@ inline constexpr std::array brick{
   X(kRamp, "ramp", kVector, "n", ramp, kReadsNothing) \
   X(kRampAlpha, "ramp-alpha", kNumber, "n", ramp, kReadsNothing) \
   X(kCurves, "curves", kVector, "nv", curves, kReadsNothing) \
-  X(kBlackbody, "blackbody", kVector, "n", none, kReadsNothing) \
-  X(kWavelength, "wavelength", kVector, "n", none, kReadsNothing) \
+  X(kBlackbody, "blackbody", kVector, "n", version, kReadsNothing) \
+  X(kWavelength, "wavelength", kVector, "n", version, kReadsNothing) \
   /* of the view and the light */ \
   X(kFresnel, "fresnel", kNumber, "nv", none, kReadsNothing) \
   X(kLayerWeightFresnel, "layer-weight-fresnel", kNumber, "nv", none, kReadsNothing) \

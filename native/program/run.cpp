@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "program/run.h"
 
+#include "math/rec709.h"
 #include "program/layers.h"
 #include "program/operands.h"
 #include "program/patterns.h"
@@ -24,7 +25,7 @@ void run(const Program& program, const ShadingContext& c, const TextureAccess& t
         o.set(Vec3f{o.n(0), o.n(0), o.n(0)});
         break;
       case kLuminance:
-        o.set(luminance(o.v(0)));
+        o.set(rec709::luminance(o.v(0), o.word(0)));
         break;
       case kMean:
         o.set((o.v(0).x + o.v(0).y + o.v(0).z) * (1 / 3.0f));
@@ -432,10 +433,10 @@ void run(const Program& program, const ShadingContext& c, const TextureAccess& t
         o.set(Vec3f{o.curve(o.v(1).x, 0, 3), o.curve(o.v(1).y, 1, 3), o.curve(o.v(1).z, 2, 3)});
         break;
       case kBlackbody:
-        o.set(spectrum::blackbody(o.n(0)));
+        o.set(spectrum::blackbody(o.n(0), o.word(0)));
         break;
       case kWavelength:
-        o.set(spectrum::wavelength(o.n(0)));
+        o.set(spectrum::wavelength(o.n(0), o.word(0)));
         break;
       case kFresnel:
         o.set(surface::fresnelNode(c, o.n(0), o.v(1)));

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "math/rec709.h"
+
 namespace wardmis::spectrum {
 namespace {
 
@@ -33,15 +35,8 @@ constexpr uint16_t kMatching[3][kSteps + 1] = {
      0,     0,     0,     0,    0,    0,    0,    0,    0,    0,     0,     0,     0},
 };
 
-constexpr Rgb toRgb(Vec3f xyz) {
-  return {3.2404542f * xyz.x - 1.5371385f * xyz.y - 0.4985314f * xyz.z,
-          -0.9692660f * xyz.x + 1.8760108f * xyz.y + 0.0415560f * xyz.z,
-          0.0556434f * xyz.x - 0.2040259f * xyz.y + 1.0572252f * xyz.z};
-}
-Rgb positive(Rgb c) { return {std::max(c.x, 0.0f), std::max(c.y, 0.0f), std::max(c.z, 0.0f)}; }
-
-// Planck's law times the observer's functions.
-Rgb blackbodyAt(double inverse) {
+// Planck's law times the observer's functions: xyz with y 1.
+Vec3f blackbodyAt(double inverse) {
   double xyz[3] = {};
   for (int i = 0; i <= kSteps; ++i) {
     const double nm = double(kFirst) + double(kStep) * i;
@@ -49,17 +44,17 @@ Rgb blackbodyAt(double inverse) {
     for (int k = 0; k < 3; ++k) xyz[k] += kMatching[k][i] * radiance;
   }
   const auto share = [&](int k) { return static_cast<float>(xyz[k] / xyz[1]); };
-  return toRgb({share(0), 1, share(2)});
+  return {share(0), 1, share(2)};
 }
 
 }  // namespace
 
 // By a table over 1/t, whose steps are so fine that its lines are within 1e-5.
-Rgb blackbody(float t) {
+Rgb blackbody(float t, uint32_t version) {
   constexpr int kEntries = 1024;
   constexpr double kLow = 1 / kHottest, kStepOfInverse = (1 / kColdest - kLow) / (kEntries - 1);
-  static const std::array<Rgb, kEntries> table = [] {
-    std::array<Rgb, kEntries> colors;
+  static const std::array<Vec3f, kEntries> table = [] {
+    std::array<Vec3f, kEntries> colors;
     for (int i = 0; i < kEntries; ++i) colors[static_cast<size_t>(i)] = blackbodyAt(kLow + i * kStepOfInverse);
     return colors;
   }();
@@ -67,10 +62,10 @@ Rgb blackbody(float t) {
   const double x = std::clamp((1 / kelvin - kLow) / kStepOfInverse, 0.0, kEntries - 1.0);
   const auto i = std::min(static_cast<size_t>(x), size_t{kEntries - 2});
   const auto share = static_cast<float>(x - static_cast<double>(i));
-  return positive(table[i] * (1 - share) + table[i + 1] * share);
+  return notNegative(rec709::fromXyz(table[i] * (1 - share) + table[i + 1] * share, version));
 }
 
-Rgb wavelength(float nm) {
+Rgb wavelength(float nm, uint32_t version) {
   const float x = (nm - kFirst) / kStep;
   if (!(x > -1 && x < kSteps)) return {0, 0, 0};
   const int i = static_cast<int>(x);  // towards 0: what lies just below the first one is extrapolated, as in Cycles
@@ -80,7 +75,7 @@ Rgb wavelength(float nm) {
     return (a + share * (b - a)) / 10000;
   };
   constexpr float kBrightest = 2.52f;  // so that no part of any is above 1
-  return positive(toRgb({at(0), at(1), at(2)}) * (1 / kBrightest));
+  return notNegative(rec709::fromXyz({at(0), at(1), at(2)}, version) * (1 / kBrightest));
 }
 
 }  // namespace wardmis::spectrum

@@ -55,8 +55,9 @@ inline Vec3f normalMapTangent(const ShadingContext& c, const AttributeValue& tan
   if (tangents.components == 0) return c.normal;
   Vec3f m = decoded(color, invertGreen);
   if (version >= 4) m = {m.x * strength, m.y * strength, 1 + (m.z - 1) * arithmetic::saturate(strength)};
-  const Vec3f tangent = tangents.xyz.value, bitangent = cross(c.interpolatedNormal, tangent) * tangents.w[0];
-  Vec3f n = normalToWorld(c.toWorld, safeNormalize(tangent * m.x + bitangent * m.y + c.interpolatedNormal * m.z));
+  const Vec3f normal = version >= 5 ? safeNormalize(c.interpolatedNormal) : c.interpolatedNormal;
+  const Vec3f tangent = tangents.xyz.value, bitangent = cross(normal, tangent) * tangents.w[0];
+  Vec3f n = normalToWorld(c.toWorld, safeNormalize(tangent * m.x + bitangent * m.y + normal * m.z));
   if (c.backfacing) n = -n;
   return strengthened(c, n, version >= 4 ? 1 : strength);
 }

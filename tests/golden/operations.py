@@ -107,7 +107,8 @@ fill("map-range-stepped", "nnnnnn", functions.map_range("STEPPED", False))
 fill("map-range-stepped", "nnnnnn", functions.map_range("STEPPED", True), clamp=True)
 
 fill("vector", "n", lambda a: np.repeat(a, 3))
-fill("luminance", "v", lambda a: a @ (0.2126, 0.7152, 0.0722))
+for version in (3, 5):
+    fill("luminance", "v", lambda a, v=version: functions.luminance(a, v), 6, version=version)
 fill("mean", "v", lambda a: a.mean())
 for i, op in enumerate("xyz"):
     fill(op, "v", lambda a, i=i: a[i], 4)

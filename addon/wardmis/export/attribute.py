@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from .. import compat
+from .spectrum import of_bytes
 
 DEFAULT_COLOR = "color:"  # the name of a mesh's colours that are active for rendering
 OF_OBJECT = ("object:", "instancer:", "layer:")  # how names of attributes begin that are not the mesh's
@@ -53,6 +54,8 @@ def read_attribute(mesh: Any, name: str) -> MeshAttribute | None:
     if attribute is None or attribute.data_type not in TYPES or attribute.domain not in {"POINT", "CORNER", "FACE"}:
         return None
     values = compat.attribute_values(attribute, *TYPES[attribute.data_type])
+    if attribute.data_type == "BYTE_COLOR":
+        values[:, :3] = of_bytes(values[:, :3], compat.CYCLES)
     if attribute.domain == "FACE":
         values = values.take(compat.corner_faces(mesh), axis=0)
     return MeshAttribute(np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0), attribute.domain != "POINT")

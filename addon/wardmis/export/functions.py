@@ -12,12 +12,11 @@ from typing import Any
 import numpy as np
 
 Function = Callable[..., Any]
-LUMINANCE = np.array((0.2126, 0.7152, 0.0722))  # of linear Rec. 709
 
 
-def luminance(c: Any) -> Any:
-    """(...)."""
-    return c @ LUMINANCE
+def luminance(c: Any, version: int = 5) -> Any:
+    """(...), of linear Rec. 709, with the digits that Cycles has: of 5 those of the primaries."""
+    return c @ np.array((0.212639, 0.7151687, 0.0721923) if version >= 5 else (0.2126729, 0.7151522, 0.072175))
 
 
 def divide(a: Any, b: Any) -> Any:

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from .. import compat
+from . import octahedral
 from .attribute import CENTER, RADIUS, generated, read_attribute
 from .context import ExportContext, ExportError
 from .model import MaterialData, MeshData, PrimitiveData
@@ -97,6 +98,8 @@ def gather_geometry(mesh: Any, wanted: Wanted, context: ExportContext) -> Geomet
         geometry = Geometry(positions, None, None, vertex_of_corner.view(np.uint32)[corners], slots)
         if shading == "POINT":
             geometry.normals = compat.vertex_normals(mesh)
+    if geometry.normals is not None and compat.NORMALS_HAVE_32_BITS:
+        geometry.normals = octahedral.rounded(geometry.normals)
     context.check_cancelled()
     corner_of = vertex_of_corner if shading == "CORNER" or by_corner else None
     geometry.uv_sets = {name: uvs for name, uvs in uv_sets.items() if name}

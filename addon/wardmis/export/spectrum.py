@@ -5,13 +5,12 @@ from __future__ import annotations
 
 import numpy as np
 
-# XYZ to linear Rec. 709
-TO_RGB = np.array(
-    (
-        (3.2404542, -1.5371385, -0.4985314),
-        (-0.9692660, 1.8760108, 0.0415560),
-        (0.0556434, -0.2040259, 1.0572252),
-    )
+# XYZ to linear Rec. 709, with the digits that Cycles has: of version 5 those of the primaries
+_ROUNDED = ((3.2404542, -1.5371385, -0.4985314), (-0.9692660, 1.8760108, 0.0415560), (0.0556434, -0.2040259, 1.0572252))
+_EXACT = (
+    (3.24096994, -1.53738318, -0.49861076),
+    (-0.96924364, 1.8759675, 0.04155506),
+    (0.05563008, -0.20397696, 1.05697151),
 )
 SECOND_RADIATION = 1.438777e7  # nm K
 
@@ -29,20 +28,30 @@ MATCHING = np.array([[float(v) / 1e4 for v in row.split()] for row in _TABLES])
 STEPS = np.linspace(380.0, 780.0, MATCHING.shape[1])  # nm
 
 
-def blackbody(kelvin: float) -> tuple[float, float, float]:
+def to_rgb(version: int) -> np.ndarray:
+    """(3, 3)."""
+    return np.array(_EXACT if version >= 5 else _ROUNDED)
+
+
+def of_bytes(colors: np.ndarray, version: int) -> np.ndarray:
+    """Colours of bytes (..., 3), which Cycles takes for those of a rounded Rec. 709."""
+    return (colors @ (to_rgb(version) @ np.linalg.inv(_ROUNDED)).T).astype(colors.dtype) if version >= 5 else colors
+
+
+def blackbody(kelvin: float, version: int) -> tuple[float, float, float]:
     """Of luminance 1; below 800 K and above 12000 K the colour does not change any more, as in Cycles."""
     radiance = STEPS**-5 / np.expm1(SECOND_RADIATION / (STEPS * min(max(kelvin, 800.0), 12000.0)))
     xyz = MATCHING @ radiance
-    return _rgb(xyz / xyz[1])
+    return _rgb(xyz / xyz[1], version)
 
 
-def wavelength(nm: float) -> tuple[float, float, float]:
+def wavelength(nm: float, version: int) -> tuple[float, float, float]:
     """Of one nanometre's light, with the largest red at 1 as in Cycles; black where nothing is seen."""
     if not 380.0 <= nm <= 780.0:
         return (0.0, 0.0, 0.0)
-    return _rgb(np.array([np.interp(nm, STEPS, row) for row in MATCHING]) / 2.52)
+    return _rgb(np.array([np.interp(nm, STEPS, row) for row in MATCHING]) / 2.52, version)
 
 
-def _rgb(xyz: np.ndarray) -> tuple[float, float, float]:
-    r, g, b = (float(v) for v in np.maximum(TO_RGB @ xyz, 0.0))
+def _rgb(xyz: np.ndarray, version: int) -> tuple[float, float, float]:
+    r, g, b = (float(v) for v in np.maximum(to_rgb(version) @ xyz, 0.0))
     return (r, g, b)

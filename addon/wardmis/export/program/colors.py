@@ -11,8 +11,6 @@ from .builder import Value
 from .folds import BLENDS, MATH, RANGES
 from .reader import Reader
 
-STEPS = 256  # of the tables that Cycles makes of ramps and curves
-
 
 def _math(use: NodeUse, _output: Any, p: Reader) -> Value | None:
     name = MATH.get(use.node.operation)
@@ -49,7 +47,7 @@ def _simple(name: str, **parameters: Any) -> Any:
 
 def _ramp(use: NodeUse, output: Any, p: Reader) -> Value:
     ramp = use.node.color_ramp
-    table = tuple(tuple(ramp.evaluate(i / STEPS)) for i in range(STEPS + 1))
+    table = tuple(tuple(ramp.evaluate(i / compat.RAMP_STEPS)) for i in range(compat.RAMP_STEPS + 1))
     name = "ramp-alpha" if output.name == "Alpha" else "ramp"
     parameters = {"interpolate": False} if ramp.interpolation == "CONSTANT" else {}
     return p(name, p.read(use, 0), table=table, **parameters)
@@ -69,7 +67,7 @@ def curve_table(mapping: Any, columns: list[int], count: int, common: int | None
             )
         )
 
-    places = [start + i / STEPS * (end - start) for i in range(STEPS + 1)]
+    places = [start + i / compat.RAMP_STEPS * (end - start) for i in range(compat.RAMP_STEPS + 1)]
     rows = [tuple(value(column, x) for column in columns) for x in places]
     table = tuple(rows) if len(columns) > 1 else tuple(row[0] for row in rows)
     return {"table": table, "from": start, "to": end, "extrapolate": mapping.extend == "EXTRAPOLATED"}
@@ -125,7 +123,7 @@ NODES = {
     "ValToRGB": _ramp,
     "MapRange": _map_range,
     "Clamp": _clamp,
-    "RGBToBW": _simple("luminance"),
+    "RGBToBW": _simple("luminance", version=compat.CYCLES),
     "SeparateColor": _separate,
     "SeparateRGB": _separate,
     "SeparateHSV": _separate,
@@ -134,6 +132,6 @@ NODES = {
     "CombineRGB": _combine,
     "CombineHSV": _combine,
     "CombineXYZ": _combine,
-    "Blackbody": _simple("blackbody"),
-    "Wavelength": _simple("wavelength"),
+    "Blackbody": _simple("blackbody", version=compat.CYCLES),
+    "Wavelength": _simple("wavelength", version=compat.CYCLES),
 }

@@ -139,6 +139,6 @@ FOLDS: dict[str, Fold] = {
     "hsv-to-rgb": f.from_hsv,
     "rgb-to-hsl": f.to_hsl,
     "hsl-to-rgb": f.from_hsl,
-    "blackbody": lambda x: np.array(blackbody(float(x[0]))),
-    "wavelength": lambda x: np.array(wavelength(float(x[0]))),
+    "blackbody": lambda x, version=5: np.array(blackbody(float(x[0]), version)),
+    "wavelength": lambda x, version=5: np.array(wavelength(float(x[0]), version)),
 }

@@ -139,7 +139,7 @@ class Reader(Builder):
         """Blender's implicit conversions of a value of the first kind of socket to the others in turn."""
         for before, after in pairwise(kinds):
             if after in NUMBERS and kind_of(value) == "vector":
-                value = self("luminance" if before == "RGBA" else "mean", value)
+                value = self("luminance", value, version=compat.CYCLES) if before == "RGBA" else self("mean", value)
             elif after not in NUMBERS:
                 value = self.vector(value)
             if after == "INT" and before != "INT":

@@ -75,7 +75,7 @@ SPACES = {
 def _normal_map(use: NodeUse, _output: Any, p: Reader) -> Value:
     node = use.node
     space, flip = SPACES[node.space]
-    parameters: dict[str, Any] = {"version": compat.CYCLES, **flip}
+    parameters: dict[str, Any] = {"version": compat.NORMAL_MAP, **flip}
     if getattr(node, "convention", "OPENGL") == "DIRECTX":
         parameters["invertGreen"] = True
     if space == "tangent" and node.uv_map:
