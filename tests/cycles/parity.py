@@ -27,8 +27,10 @@ from wardmis.export import scene as exporter  # noqa: E402
 
 
 def bowl() -> Any:
-    """A patch of 1 x 1 with UVs, whose normals lean by up to 40 degrees, and whose edges no pixel has in its middle."""
-    x, y = np.meshgrid(np.linspace(-0.5, 0.5, 12), np.linspace(-0.5, 0.5, 10))
+    """A patch of 1 x 1 with UVs, whose normals lean by up to 40 degrees.
+
+    With an even number of faces along x and an odd one along y no pixel has an edge or a diagonal in its middle."""
+    x, y = np.meshgrid(np.linspace(-0.5, 0.5, 11), np.linspace(-0.5, 0.5, 10))
     index = np.arange(x.size).reshape(x.shape)
     faces = np.stack([index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1]], axis=-1).reshape(-1, 4)
     mesh = bpy.data.meshes.new("Patch")
@@ -58,6 +60,7 @@ def build(cases: list[tuple[str, str, float, Callable[[Nodes], Any]]]) -> None:
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     scene = bpy.context.scene
     mesh = bowl()
+    rows = math.ceil(len(cases) / COLUMNS)
     for i, (_, case, _, make) in enumerate(cases):
         material = bpy.data.materials.new(case)
         material.use_nodes, material.pass_index = True, 3
@@ -68,16 +71,19 @@ def build(cases: list[tuple[str, str, float, Callable[[Nodes], Any]]]) -> None:
         nodes.feed(nodes("OutputMaterial").inputs["Surface"], emission.outputs[0])
         obj = bpy.data.objects.new(f"Patch {i}", mesh)
         scene.collection.objects.link(obj)
-        obj.location = (i % COLUMNS, i // COLUMNS, 0)
+        obj.location = (
+            i % COLUMNS - COLUMNS / 2 + 0.5,
+            i // COLUMNS - rows / 2 + 0.5,
+            0,
+        )  # small numbers are rounded less
         if not mesh.materials:
             mesh.materials.append(None)
         obj.material_slots[0].link = "OBJECT"
         obj.material_slots[0].material = material
         obj.color, obj.pass_index, obj["Warmth"] = (0.2, 0.4, 0.6, 0.8), 7, (0.3, 0.6, 0.9)
-    rows = math.ceil(len(cases) / COLUMNS)
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     scene.collection.objects.link(camera)
-    camera.location = (COLUMNS / 2 - 0.5, rows / 2 - 0.5, 5)
+    camera.location = (0, 0, 5)
     camera.data.type, camera.data.ortho_scale = "ORTHO", max(COLUMNS, rows)
     scene.camera = camera
     render = scene.render

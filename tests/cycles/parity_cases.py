@@ -8,6 +8,7 @@ from typing import Any
 
 import bpy
 import numpy as np
+from parity_rows import PIXELS
 from patches import Nodes
 
 EXACT, NOISY = 1e-4, 1e-3
@@ -18,10 +19,14 @@ Case = tuple[str, str, float, Callable[[Nodes], Any]]
 class Inputs:
     """Numbers, vectors and colours that vary over a patch."""
 
-    def __init__(self, n: Nodes) -> None:
+    def __init__(self, n: Nodes, smooth: bool = False) -> None:
+        """By steps from the middle of a pixel to the next, whose every bit is the same in both; smooth: as UVs are interpolated."""
         self.n = n
-        self.uv = n("TexCoord").outputs["UV"]
-        self.parts = n("SeparateXYZ", self.uv).outputs
+        parts = n("SeparateXYZ", n("TexCoord").outputs["UV"]).outputs[:2]
+        if not smooth:
+            below = [n("Math", part, 1 / PIXELS, operation="SNAP").outputs[0] for part in parts]
+            parts = [n("Math", part, 0.5 / PIXELS, operation="ADD").outputs[0] for part in below]
+        self.parts = parts
 
     def u(self, low: float, high: float, axis: int = 0) -> Any:
         return self.n("Math", self.parts[axis], high - low, low, operation="MULTIPLY_ADD").outputs[0]
@@ -33,6 +38,9 @@ class Inputs:
         low, high = -0.47 * scale, 0.53 * scale
         both = self.n("Math", self.u(low, high), self.v(0.31, -0.4), operation="ADD").outputs[0]
         return self.n("CombineXYZ", self.u(low, high), self.v(low, high), both).outputs[0]
+
+    def direction(self) -> Any:
+        return self.n("VectorMath", self.vector(), operation="NORMALIZE").outputs[0]
 
     def color(self) -> Any:
         return self.n("CombineColor", self.u(0.03, 0.97), self.v(0.05, 0.9), self.u(0.8, 0.1)).outputs[0]
@@ -90,34 +98,14 @@ def fill(node: Any, n: Nodes, **inputs: Any) -> Any:
     return node
 
 
-# What is measured further from Cycles' than it should be: limits that hold the figures, not aims
-KNOWN = {
-    "RGBToBW Val": 3e-4,  # not explained; Cycles' weights may have more digits
-    "VectorMath modulo Vector": 1e-3,  # next to 0 rounding is all that is left
-    "VectorMath wrap Vector": 1e-3,
-}
-# Measured in 4.3, not in 3.4 and 5.2; why is not known: perhaps Cycles divides quads elsewhere there
-QUADS = {"NewGeometry True Normal": 0.3, "NewGeometry Parametric": 3.0} if (4, 1) <= bpy.app.version < (5, 0) else {}
-# 5.2's tangent-space normal maps differ by 3e-3, tangents themselves by 1e-4; why is not known
-if bpy.app.version >= (5, 0):
-    KNOWN["NormalMap tangent Normal"] = 5e-3
-# by node; not explained: noise that is not normalised, in 4.3 and 5.2; and 5.2 as a whole, below
-LOOSE = {"TexNoise": 1e-2, "TexBrick": 3e-4, "ValToRGB": 2e-4}  # by node
-
-
 def cases() -> Iterator[Case]:
-    for node, name, within, make in every_case():
-        known = (KNOWN | QUADS).get(name)
-        yield node, name, known or max(within, LOOSE.get(node, 0.0), 4e-4 if bpy.app.version >= (5, 0) else 0.0), make
-
-
-def every_case() -> Iterator[Case]:
     yield from numbers()
     yield from vectors()
     yield from colors()
     yield from places()
     yield from patterns()
     yield from images()
+    yield from skies()
     yield from normals()
 
 
@@ -140,6 +128,14 @@ def numbers() -> Iterator[Case]:
     for operation in each("operation", "Math"):
         yield from case("Math", in_order("Math", x, y, z), operation=operation)
     yield from case("Math", in_order("Math", x, y, z), operation="ADD", use_clamp=True)
+    for kind, value in (("Value", -0.7), ("RGB", (0.3, 0.6, 0.9, 0.5))):
+
+        def own(n: Nodes, _i: Inputs, kind: str, value: Any = value) -> Any:
+            node = n(kind)
+            node.outputs[0].default_value = value
+            return node
+
+        yield from case(kind, own)
     for kind in each("clamp_type", "Clamp"):
         yield from case("Clamp", in_order("Clamp", x, y, z), clamp_type=kind)
     ranges = (
@@ -361,12 +357,10 @@ def patterns() -> Iterator[Case]:
     }
     dimensions = ("1D", "2D", "3D", "4D")
     for d in dimensions:
-        for setting in (
-            ({"noise_type": kind} for kind in each("noise_type", "TexNoise")) if bpy.app.version >= (4, 1) else ({},)
-        ):
-            yield from case("TexNoise", plain("TexNoise", **noise), NOISY, noise_dimensions=d, **setting)
-        if bpy.app.version >= (4, 0):
-            yield from case("TexNoise", plain("TexNoise", **noise), NOISY, noise_dimensions=d, normalize=False)
+        kinds = [{"noise_type": kind} for kind in each("noise_type", "TexNoise")] if bpy.app.version >= (4, 1) else [{}]
+        for kind in kinds:
+            for setting in [{"normalize": True}, {"normalize": False}] if bpy.app.version >= (4, 0) else [{}]:
+                yield from case("TexNoise", plain("TexNoise", **noise), NOISY, noise_dimensions=d, **kind, **setting)
         if has("TexMusgrave"):
             for kind in each("musgrave_type", "TexMusgrave"):
                 build = plain("TexMusgrave", **noise)
@@ -470,6 +464,11 @@ def picture(name: str, floats: bool) -> Any:
     return made
 
 
+def skies() -> Iterator[Case]:
+    for kind in each("sky_type", "TexSky"):
+        yield from case("TexSky", plain("TexSky", Vector=lambda i: i.direction()), NOISY, sky_type=kind)  # by a table
+
+
 def images() -> Iterator[Case]:
     for interpolation in each("interpolation", "TexImage"):
         for extension in each("extension", "TexImage"):
@@ -477,7 +476,7 @@ def images() -> Iterator[Case]:
             def image(n: Nodes, i: Inputs, kind: str) -> Any:
                 return fill(n(kind, image=picture("Bytes", False)), n, Vector=i.vector(1.4))
 
-            yield from case("TexImage", image, NOISY, interpolation=interpolation, extension=extension)
+            yield from case("TexImage", image, interpolation=interpolation, extension=extension)
     for projection in each("projection", "TexImage"):
 
         def projected(n: Nodes, i: Inputs, kind: str) -> Any:
@@ -486,13 +485,13 @@ def images() -> Iterator[Case]:
             node.projection_blend = 0.4
             return node
 
-        yield from case("TexImage", projected, NOISY, projection=projection)
+        yield from case("TexImage", projected, projection=projection)
     for projection in each("projection", "TexEnvironment"):
 
         def sky(n: Nodes, i: Inputs, kind: str) -> Any:
             return fill(n(kind, image=picture("Floats", True)), n, Vector=i.vector())
 
-        yield from case("TexEnvironment", sky, NOISY, projection=projection)
+        yield from case("TexEnvironment", sky, projection=projection)
 
 
 def normals() -> Iterator[Case]:
@@ -500,9 +499,10 @@ def normals() -> Iterator[Case]:
         build = plain("NormalMap", Strength=lambda i: i.v(0.2, 1.4), Color=lambda i: i.color())
         yield from case("NormalMap", build, space=space)
 
-    def bump(n: Nodes, i: Inputs, _kind: str) -> Any:
+    def bump(n: Nodes, _i: Inputs, _kind: str) -> Any:
+        i = Inputs(n, smooth=True)
         height = n("TexNoise", i.vector(), None, 1.5).outputs[0]
         return fill(n("Bump"), n, Strength=i.u(0.2, 1), Distance=i.v(0.2, 0.5), Height=height)
 
     for invert in (False, True):
-        yield from case("Bump", bump, 2e-3, invert=invert)
+        yield from case("Bump", bump, NOISY, invert=invert)

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 PIXELS = 8  # of a patch, each way
-COLUMNS = 16
+COLUMNS = 32
 EDGES = 1  # of a patch's pixels, so many may lie on the other side of a pattern's edge
 DARK = 0.1  # of the patch's largest value: smaller ones count relative to this
 
@@ -53,12 +53,7 @@ def difference(a: np.ndarray, b: np.ndarray) -> float:
     return float(np.sort((np.abs(a - b) / scale).max(axis=-1).ravel())[-1 - EDGES])
 
 
-def table(found: list[Row]) -> str:
-    """By node: how many of its outputs and settings agree, and the largest difference."""
-    lines = ["| node | cases | largest difference | |", "|---|---:|---:|---|"]
-    for node in dict.fromkeys(row.node for row in found):
-        of_node = [row for row in found if row.node == node]
-        failed = [row.case for row in of_node if row.deviates]
-        worst = max(row.worst for row in of_node)
-        lines.append(f"| {node} | {len(of_node)} | {worst:.1e} | {'; '.join(failed)} |")
-    return "\n".join(lines) + "\n"
+def by_node(found: list[Row]) -> dict[str, tuple[int, float]]:
+    """How many of its outputs and settings were compared, and their largest difference."""
+    nodes = {row.node: [other.worst for other in found if other.node == row.node] for row in found}
+    return {node: (len(worst), max(worst)) for node, worst in nodes.items()}

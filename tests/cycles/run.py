@@ -23,6 +23,7 @@ sys.path[:0] = [str(HERE), str(ROOT / "tools")]
 
 import blocks  # noqa: E402
 import parity_rows  # noqa: E402
+import parity_table  # noqa: E402
 
 AGAIN = 100_000  # the seeds of a second render
 CERTAIN = 10.0  # standard errors that need none
@@ -94,13 +95,13 @@ def compared(folder: Path, name: str) -> Row:
 
 
 def parity(folder: Path) -> list[parity_rows.Row]:
-    """Node by node, pixel by pixel; writes the table of nodes beside that of scenes."""
+    """Node by node, pixel by pixel; writes the figures of each beside the table of scenes."""
     done = blender("--python-exit-code", "1", "--python", HERE / "parity.py", "--", folder)
     (folder / "parity.log").write_text(done.stdout)
     if done.returncode != 0:
         sys.exit(f"the nodes could not be rendered:\n{done.stdout[-2000:]}")
     found = parity_rows.rows(folder)
-    folder.with_name(f"{folder.name}-nodes.md").write_text(parity_rows.table(found))
+    folder.with_name(f"{folder.name}-nodes.json").write_text(json.dumps(parity_rows.by_node(found), indent=1))
     return found
 
 
@@ -144,6 +145,12 @@ def main(pattern: str) -> int:
                 print(f"FAIL parity: {node.case}: {node.worst:.1e}, and {node.within:.0e} is allowed", flush=True)
         failed += (deviating := sum(node.deviates for node in nodes.result()))
         passed += len(nodes.result()) - deviating
+        said = parity_table.read(parity_table.DOCUMENT.read_text())
+        untrue = parity_table.untrue(said, ".".join(version[1].split(".")[:2]), parity_rows.by_node(nodes.result()))
+        for fault in untrue:
+            print(f"FAIL docs/nodes.md: {fault}", flush=True)
+        failed += bool(untrue)
+        passed += not untrue
     print(f"{passed} passed, {failed} failed")
     return 1 if failed or not passed else 0
 
