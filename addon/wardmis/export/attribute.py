@@ -13,7 +13,7 @@ from .. import compat
 from .spectrum import of_bytes
 
 DEFAULT_COLOR = "color:"  # the name of a mesh's colours that are active for rendering
-OF_OBJECT = ("object:", "instancer:", "layer:")  # how names of attributes begin that are not the mesh's
+OF_OBJECT = ("object:", "instancer:", "layer:", "instance:")  # how names of attributes begin that are not the mesh's
 # what the nodes Curves Info and Point Info tell: names of attributes that no file can have by chance
 STRAND, INTERCEPT, LENGTH, DIAMETER, RANDOM = (
     f"curves info:{name}" for name in ("strand", "intercept", "length", "diameter", "random")

@@ -135,9 +135,16 @@ def _random_of(obj: Any, instance: Any) -> float:
 
 
 def _owners_of_attributes(obj: Any, instance: Any) -> dict[str, tuple[Any, ...]]:
-    """What has the attributes of the object and of what places it, by how their names begin."""
+    """What has the attributes of the object, of what places it, and of the place, by how their names begin."""
     instancer = instance.parent if instance.is_instance and instance.parent is not None else obj
-    return {"object:": (obj, obj.data), "instancer:": (instancer, instancer.data)}
+    return {"object:": (obj, obj.data), "instancer:": (instancer, instancer.data), "instance:": (_place_on(instance),)}
+
+
+def _place_on(instance: Any) -> dict[str, tuple[float, ...]]:
+    """Of what brings an instance; as Cycles has it."""
+    if not instance.is_instance:
+        return {}
+    return {"UV": (*instance.uv, 0.0), "Generated": tuple(0.5 * x - 0.5 for x in instance.orco)}
 
 
 def _lamp_object(obj: Any, instance: Any) -> LampObject:

@@ -3,7 +3,24 @@
 
 import bpy
 import numpy as np
-from stage import ball, box, collection, diffuse, gradient, instance, lamp, mesh, painted, place, scene, square, stage
+from stage import (
+    add,
+    ball,
+    box,
+    collection,
+    diffuse,
+    feed,
+    gradient,
+    instance,
+    lamp,
+    mesh,
+    painted,
+    place,
+    scene,
+    sheet,
+    square,
+    stage,
+)
 from wardmis import compat
 
 
@@ -107,6 +124,38 @@ def particle_collections():
     made.location.z, made.show_instancer_for_render = 0.1, False
 
 
+def from_instancer(kind, output):
+    """A surface that shows coordinates of the instancer's, of which some are negative."""
+
+    def lifted(tree):
+        own = add(tree, kind, {"from_instancer": True}).outputs[output]
+        node = add(tree, "VectorMath", {"operation": "MULTIPLY_ADD"})
+        for socket, value in zip(node.inputs, (own, (0.6,) * 3, (0.35,) * 3)):
+            feed(tree, socket, value)
+        return node.outputs[0]
+
+    return painted(lifted)
+
+
+@scene
+def coordinates_of_faces():
+    stage()
+    for x, kind, output in ((-1.2, "TexCoord", "UV"), (1.2, "TexCoord", "Generated")):
+        parent = sheet(diffuse(), divisions=3, size=1)
+        parent.location = x, 0, 0.4
+        box(from_instancer(kind, output), location=(0, 0, 0), scale=(0.2, 0.2, 0.2)).parent = parent
+        parent.instance_type = "FACES"
+
+
+@scene
+def coordinates_of_particles():
+    """And of what nothing has brought: an object itself."""
+    stage()
+    child = box(from_instancer("UVMap", "UV"), location=(-1.5, -1.5, 0.4), scale=(0.4, 0.4, 0.4))
+    made = particles(sheet(diffuse(), size=2), render_type="OBJECT", instance_object=child, particle_size=0.6)
+    made.location.z, made.show_instancer_for_render = 0.2, True
+
+
 @scene
 def hair_objects():
     """Hair of objects in strands' places."""
@@ -180,7 +229,7 @@ def many():
 @scene
 def textured():
     """Instances keep the mesh's UV map."""
-    from stage import add, image, sheet
+    from stage import image
 
     stage()
     picture = image("Colours", gradient(4, 4))

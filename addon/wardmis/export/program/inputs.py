@@ -44,8 +44,8 @@ def _by_output(names: dict[str, str]) -> Any:
 
 
 def _coordinates(use: NodeUse, output: Any, p: Reader) -> Value | None:
-    if use.node.from_instancer and output.name in {"Generated", "UV"}:
-        use.note(f"takes its {output.name} from the instancer, which is not supported; the object's own is used")
+    if use.node.from_instancer and output.name in {"Generated", "UV"} and p.kind != "world":
+        return _of_instancer(use, output, p)
     if output.name == "Object" and use.node.object is not None:
         return p.mapped(p.place("position"), [use.node.object.matrix_world.inverted_safe()])
     return _by_output(COORDINATES)(use, output, p)  # type: ignore[no-any-return]
@@ -62,10 +62,16 @@ COORDINATES = {
 }
 
 
-def _uv_map(use: NodeUse, _output: Any, p: Reader) -> Value:
+def _uv_map(use: NodeUse, output: Any, p: Reader) -> Value:
     if use.node.from_instancer:
-        use.note("takes its UVs from the instancer, which is not supported; the object's own are used")
+        return _of_instancer(use, output, p)
     return p.place("uv", **_set(use.node.uv_map))
+
+
+def _of_instancer(use: NodeUse, output: Any, p: Reader) -> Value:
+    if p.kind == "light":
+        use.note(f"takes its {output.name} from what brings the lamp, which is not supported; 0 is used instead")
+    return p.place("attribute", name=f"instance:{output.name}")
 
 
 def _set(name: str) -> dict[str, str]:
