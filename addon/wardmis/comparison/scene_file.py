@@ -15,9 +15,7 @@ WARD = "WardMIS shows Ward's reflection, Cycles Beckmann's"
 WALK = "WardMIS shows GGX whose lost energy is added evenly, Cycles before 4.0 light that walks from facet to facet"
 COAT = "WardMIS shows the clearcoat's own light, Cycles before 4.0 draws its directions by another density than it divides by"
 BECKMANN = "WardMIS shows anisotropic Beckmann reflection, of which Cycles before 4.0 draws both axes by one roughness"
-ASHIKHMIN = (
-    "WardMIS shows Ashikhmin and Shirley's reflection, of which Cycles' sampling leaves some out at grazing angles"
-)
+ASHIKHMIN = "WardMIS shows Ashikhmin and Shirley's reflection, to which Cycles adds some at grazing angles by half vectors turned over"
 
 
 @dataclass
