@@ -611,8 +611,9 @@ class Files(unittest.TestCase):
         self.assertTrue(reason.endswith("of material 'A', 'B', 'C' and 2 more"), reason)
 
     def test_models_that_cycles_lacks(self):
-        def reasons(**closure):
-            material = {"name": "A", "extensions": {"WARDMIS_scene": {"closures": [{"weight": {}, **closure}]}}}
+        def reasons(*others, **closure):
+            closures = [{"weight": {}, **closure}, *others]
+            material = {"name": "A", "extensions": {"WARDMIS_scene": {"closures": closures}}}
             document = {"materials": [material], "extensions": {"WARDMIS_scene": {"notes": ["fog"]}}}
             return SceneFile("", document).other_than_blenders()
 
@@ -625,6 +626,14 @@ class Files(unittest.TestCase):
         self.assertIn("by one roughness", reasons(**beckmann, alphaY={"value": 0.2})[0])
         self.assertEqual(reasons(**beckmann, alphaY={"value": 0.1}), ["fog"])
         self.assertIn("Ashikhmin", reasons(type="glossy", distribution="ashikhmin-shirley")[0])
+        through, rough = {"type": "transparent", "weight": {}}, {"alpha": {"value": 0.1}, "version": 3}
+        self.assertIn("straight through", reasons(through, type="refraction", **rough)[0])
+        linked = {"transmission": {"value": 0.0, "result": 1}, "version": 3}
+        self.assertIn("straight through", reasons(through, type="principled", **linked)[0])
+        self.assertEqual(reasons(type="refraction", **rough), ["fog"])
+        self.assertEqual(reasons(through, type="glass", version=3), ["fog"])
+        self.assertEqual(reasons(through, type="principled", version=3), ["fog"])
+        self.assertEqual(reasons(through, type="glass", **rough | {"version": 4}), ["fog"])
 
     def test_checkpoints(self):
         self.assertEqual(converge.checkpoints(1), [1])
