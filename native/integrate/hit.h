@@ -44,7 +44,14 @@ template <class E, int Capacity>
 class Scratch {
  public:
   E& operator[](int i) { return *std::launder(reinterpret_cast<E*>(storage_ + static_cast<size_t>(i) * sizeof(E))); }
-  void set(int i, const E& e) { new (storage_ + static_cast<size_t>(i) * sizeof(E)) E(e); }
+  void set(int i, const E& e) {
+    make(i, [&] { return e; });
+  }
+  // Where it is to stay, without a copy.
+  template <class F>
+  E& make(int i, F&& f) {
+    return *new (storage_ + static_cast<size_t>(i) * sizeof(E)) E(f());
+  }
 
  private:
   alignas(E) std::byte storage_[sizeof(E) * static_cast<size_t>(Capacity)];
@@ -170,8 +177,10 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
   const auto indexOf = [&](size_t t, int m) { return plan.firstPoint[t] + static_cast<uint32_t>(m); };
   Scratch<LightChoice, kMaxSamplesPerHit> lights;  // first of all, see Emitters::choose()
   for (int m = 0; m < n[kLight]; ++m)
-    lights.set(m, world.emitters.choose(sampler.getChoice(
-                      plan.pixelKey, dimension + Dimensions<K>::kTechnique + uint32_t{kLight}, indexOf(kLight, m))));
+    lights.make(m, [&] {
+      return world.emitters.choose(sampler.getChoice(
+          plan.pixelKey, dimension + Dimensions<K>::kTechnique + uint32_t{kLight}, indexOf(kLight, m)));
+    });
 
   // Draw the directions of all techniques.
   LobeBatch<T, kLobes, kMaxSamplesPerHit> batch;
@@ -210,7 +219,8 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     }
   end[kCosine] = j;
   for (int m = 0; m < n[kLight]; ++m, ++j) {
-    light.set(j, world.emitters.sample(x.position, lights[m], static_cast<int>(plan.vertex), x.path.time));
+    light.make(
+        j, [&] { return world.emitters.sample(x.position, lights[m], static_cast<int>(plan.vertex), x.path.time); });
     const Vec3f wi = x.frame.toLocal(light[j].direction);
     batch.set(j, {T(wi.x), T(wi.y), T(wi.z)});
   }
@@ -258,7 +268,10 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
   };
   const auto add = [&](size_t t, bool sharp, bool ahead, const Values& all, Rgb radiance, const Fractions<K>& p,
                        uint8_t visibility, int set) {
-    const Values f = seen(all, visibility, ahead);
+    constexpr uint8_t kAll = kSeenBySurfaces | kSeenByTranslucence;
+    const bool byAll = (visibility & kAll) == kAll;
+    const Values masked = byAll ? Values{} : seen(all, visibility, ahead);
+    const Values& f = byAll ? all : masked;
     if (!split) {
       const Rgb value = total(f) * radiance;
       const TechniqueMask used = techniques(t, sharp);
@@ -285,9 +298,9 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
   };
 
   size_t t = 0;
-  for (int k = 0; k < j; ++k) {
-    while (k >= end[t]) ++t;
-    const int set = (k - (t == 0 ? 0 : end[t - 1])) % kSets;
+  for (int k = 0, begin = 0; k < j; ++k) {
+    while (k >= end[t]) begin = end[t++];
+    const int set = (k - begin) % kSets;
     ++counts.samples[t];
     const Vec3<T> wi = batch.wi(k);
     if (t < kLobes && !present[t]) continue;
@@ -465,7 +478,9 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
             to += Rgb{part(f[i].x, all.x), part(f[i].y, all.y), part(f[i].z, all.z)};
         }
       }
-      if (strength(w) > 0) continuations.list.set(continuations.count++, {ray, hit, w, t, bounce, scale, used, set, p});
+      if (strength(w) > 0)
+        continuations.list.make(continuations.count++,
+                                [&] { return Continuation<K>{ray, hit, w, t, bounce, scale, used, set, p}; });
     }
   }
   if (record != nullptr && record->moments != nullptr)

@@ -127,14 +127,14 @@ template <size_t K>
 Framef resolveLobes(const Scene& scene, const Material& material, const ShadedPoint& point, Vec2f uv, Vec3f tangent,
                     const LobeNumbers& numbers, LobeSurface<K>& surface, Rgb& emission);
 
-// The surface's inputs at the point, and the frame in which they are told. tangent(): direction of the anisotropy.
-template <uint32_t N, size_t K, class Tangent>
-void resolveSurface(const Scene& scene, const Material& m, const ShadedPoint& point, Vec2f uv, Tangent&& tangent,
+// The surface's inputs at the point, and the frame in which they are told. ns: its shading normal; point(): for
+// programs; tangent(): direction of the anisotropy.
+template <uint32_t N, size_t K, class Point, class Tangent>
+void resolveSurface(const Scene& scene, const Material& m, Vec3f ns, Vec2f uv, Point&& point, Tangent&& tangent,
                     const LobeNumbers& lobes, InteractionOf<SurfaceOf<N, K>>& x) {
   if constexpr ((N & kNeedsLobes) != 0) {
-    x.frame = resolveLobes<K>(scene, m, point, uv, tangent(), lobes, x.surface, x.emission);
+    x.frame = resolveLobes<K>(scene, m, point(), uv, tangent(), lobes, x.surface, x.emission);
   } else {
-    Vec3f ns = point.normal;
     const auto color = [&](const ColorInput& c) { return c.texture.texture >= 0 ? evaluate(scene, c, uv) : c.value; };
     const auto reflectance = [&](const ColorInput& c) {
       return c.texture.texture >= 0 ? notNegative(evaluate(scene, c, uv)) : c.value;
@@ -143,7 +143,7 @@ void resolveSurface(const Scene& scene, const Material& m, const ShadedPoint& po
       return c.texture.texture >= 0 ? evaluateAlpha(scene, c, uv) : c.value;
     };
     if (m.program) [[unlikely]] {
-      resolve(scene, m, point, uv, x.surface, x.emission, ns);
+      resolve(scene, m, point(), uv, x.surface, x.emission, ns);
     } else {
       if constexpr ((N & kNeedsDiffuse) != 0) x.surface.diffuse = reflectance(m.diffuse);
       if constexpr ((N & kNeedsSpecular) != 0) {
@@ -163,6 +163,24 @@ void resolveSurface(const Scene& scene, const Material& m, const ShadedPoint& po
   }
 }
 
+// On a curve or a sphere.
+template <uint32_t N, size_t K>
+[[gnu::noinline]] void interactWithStrand(const Scene& scene, const LobeNumbers& lobes, const Placement& placement,
+                                          const Shape& shape, const Ray& ray, const Hit& hit,
+                                          InteractionOf<SurfaceOf<N, K>>& x) {
+  const StrandPoint on = strandPoint(placement, shape, ray, hit);
+  x.position = on.position;
+  x.geometric = on.normal;
+  x.primitive = {hit.placement, hit.shape, shape.strands->strandOf(hit.triangle)};
+  const auto point = [&] {
+    return ShadedPoint{placement, shape,     hit.triangle, hit.u,     hit.v,  x.position,
+                       on.facing, on.normal, x.wo,         on.turned, x.path, hit.t};
+  };
+  resolveSurface<N, K>(
+      scene, scene.materials[static_cast<size_t>(shape.material)], on.normal, uvAt(shape, hit), point,
+      [&] { return on.along; }, lobes, x);
+}
+
 // placement: of the hit, where it is at the ray's time.
 template <uint32_t N, size_t K>
 InteractionOf<SurfaceOf<N, K>> interactWith(const Scene& scene, const LobeNumbers& lobes, const Placement& placement,
@@ -175,15 +193,7 @@ InteractionOf<SurfaceOf<N, K>> interactWith(const Scene& scene, const LobeNumber
   x.path = ray.path;
   x.rayLength = hit.t;
   if (shape.strands != nullptr) [[unlikely]] {
-    const StrandPoint on = strandPoint(placement, shape, ray, hit);
-    x.position = on.position;
-    x.geometric = on.normal;
-    x.primitive = {hit.placement, hit.shape, shape.strands->strandOf(hit.triangle)};
-    const Vec2f uv = uvAt(shape, hit);
-    const ShadedPoint point{placement, shape,     hit.triangle, hit.u,     hit.v,  x.position,
-                            on.facing, on.normal, x.wo,         on.turned, x.path, hit.t};
-    resolveSurface<N, K>(
-        scene, m, point, uv, [&] { return on.along; }, lobes, x);
+    interactWithStrand<N, K>(scene, lobes, placement, shape, ray, hit, x);
     return x;
   }
   const uint32_t* i = shape.indices + 3 * size_t{hit.triangle};
@@ -214,11 +224,12 @@ InteractionOf<SurfaceOf<N, K>> interactWith(const Scene& scene, const LobeNumber
   // closures see to that themselves, where they do
   if (!shape.part->normals.empty() && m.closures.empty()) ns = bent(ns, ng, x.wo);
 
-  const Vec2f uv = uvAt(shape, hit);
-  const ShadedPoint point{placement, shape, hit.triangle, hit.u,  hit.v,  x.position,
-                          ng,        ns,    x.wo,         turned, x.path, hit.t};
+  const auto point = [&] {
+    return ShadedPoint{placement, shape, hit.triangle, hit.u, hit.v, x.position, ng, ns, x.wo, turned, x.path, hit.t};
+  };
   resolveSurface<N, K>(
-      scene, m, point, uv, [&] { return tangent(placement, shape, i, corner, x.position); }, lobes, x);
+      scene, m, ns, uvAt(shape, hit), point, [&] { return tangent(placement, shape, i, corner, x.position); }, lobes,
+      x);
   return x;
 }
 

@@ -131,13 +131,15 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
   Continuations<K> more;
   const Counts::PerTechnique before = counts.samples;
   std::optional<HitRecord<K>> record;
-  std::optional<CandidateHit<K>> candidate;
-  LightSplit lightSplit;  // not std::optional, which compilers clear for each camera ray
+  LightSplit lightSplit;                      // not std::optional, which compilers clear for each camera ray ...
+  Scratch<CandidateHit<K>, 1> candidateSums;  // ... nor this
+  CandidateHit<K>* candidate = nullptr;
   LightSplit* const split = light != nullptr ? &lightSplit : nullptr;
   const bool noted = pilot != nullptr && follows;
   if (noted || split != nullptr) {
-    if (noted && candidates != nullptr) candidate.emplace(in.candidates.of(mask));
-    record.emplace(HitRecord<K>{noted ? moments : nullptr, candidate ? &*candidate : nullptr, split});
+    if (noted && candidates != nullptr)
+      candidate = &candidateSums.make(0, [&] { return CandidateHit<K>(in.candidates.of(mask)); });
+    record.emplace(HitRecord<K>{noted ? moments : nullptr, candidate, split});
   }
   sum += estimate<N, K>(world, in.sampler, x, plan, counts, record ? &*record : nullptr, more) * seenThrough;
   if (split != nullptr) [[unlikely]]
@@ -164,7 +166,7 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
                     c.used, c.set);
     }
   }
-  if (candidate) candidate->addTo(*candidates, in.cost);
+  if (candidate != nullptr) candidate->addTo(*candidates, in.cost);
   return sum;
 }
 

@@ -96,10 +96,10 @@ inline Rgb throughCurve(const Strands& strands, Rgb transparent, PathState& path
 
 // What arrives of light at the end of a shadow ray.
 template <uint32_t N, size_t K>
-Rgb transmittance(const RenderScene& world, Ray ray) {
+Rgb transmittance(const RenderScene& world, const Ray& shadow) {
   constexpr Rgb kAll{1, 1, 1}, kNone{0, 0, 0};
-  if constexpr ((N & kNeedsLobes) == 0) return world.accel.occluded(ray) ? kNone : kAll;
-  if (world.mostTransparent == 0) return world.accel.occluded(ray) ? kNone : kAll;
+  if ((N & kNeedsLobes) == 0 || world.mostTransparent == 0) return world.accel.occluded(shadow) ? kNone : kAll;
+  Ray ray = shadow;
   Rgb left = kAll;
   for (;;) {
     const Hit hit = world.accel.intersect(ray);

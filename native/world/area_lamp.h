@@ -3,6 +3,8 @@
 // sees no more than a part, and that part alone is sampled.
 #pragma once
 
+#include <algorithm>
+
 #include "scene/scene.h"
 
 namespace wardmis {
@@ -17,6 +19,10 @@ class AreaLamp {
   // Of the whole parallelogram |a|, |b| <= 1 that it is, or that is around it.
   Vec3f at(float a, float b) const { return center_ + halfX_ * a + halfY_ * b; }
   bool ellipse() const { return ellipse_; }
+  // The squared radius of a sphere about its centre in which it lies.
+  float reach2() const {
+    return std::max(dot(halfX_ + halfY_, halfX_ + halfY_), dot(halfX_ - halfY_, halfX_ - halfY_));
+  }
 
   // Of the angle between its plane's normal and d, which leaves it; not above 0: no light leaves there.
   float cosine(Vec3f d) const;

@@ -29,11 +29,7 @@ class CameraRays {
   Ray ray(float px, float py, Vec2f u, float time = kMiddle) const {
     const Camera& c = camera_;
     const float fx = px / static_cast<float>(film_.width), fy = py / static_cast<float>(film_.height);
-    Ray r;
-    if (motion_) [[unlikely]]
-      r = through(motion_->at(time), fx, fy, u, time);
-    else
-      r = through(c.toWorld, fx, fy, u, time);
+    Ray r = motion_ ? through(motion_->at(time), fx, fy, u, time) : through(c.toWorld, fx, fy, u, time);
     r.path.time = time;
     return r;
   }

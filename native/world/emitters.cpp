@@ -174,7 +174,10 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Env
     const auto index = static_cast<uint32_t>(lamps_.size());
     l.exclusive = l.kind == Kind::kDeltaPoint || l.kind == Kind::kDeltaSun || !l.shadow;
     (l.exclusive ? exclusive_ : shared_) = true;
-    if (!l.exclusive) (light.type == LightType::kSun ? infinite_ : finite_).push_back(index);
+    if (!l.exclusive && light.type == LightType::kSun)
+      infinite_.push_back(index);
+    else if (!l.exclusive)
+      finite_.push_back({index, l.center, l.kind == Kind::kArea ? l.plane.reach2() : l.radius * l.radius});
     lamps_.push_back(l);
     power.push_back(std::max(w, 0.0));
   }

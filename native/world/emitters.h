@@ -115,9 +115,23 @@ class Emitters {
   struct Triangle {
     uint32_t placement, shape, triangle;
   };
-  std::vector<Triangle> emissive_;           // emitters lamps_.size() ...
-  AliasTable table_;                         // over lamps, then emissive triangles
-  std::vector<uint32_t> finite_, infinite_;  // indices of the lamps that a ray can meet
+  std::vector<Triangle> emissive_;  // emitters lamps_.size() ...
+  // A lamp somewhere, which a ray can meet, and a sphere around it, which most rays pass by.
+  struct Finite {
+    uint32_t lamp;  // its index
+    Vec3f center;
+    float radius2;  // squared
+
+    bool isPassedBy(const Ray& ray) const {
+      constexpr float kRoundings = 1e-5f;  // of squared distances; many more than there are
+      const Vec3f to = center - ray.origin;
+      const float d2 = dot(to, to), along = std::max(dot(ray.direction, to), 0.0f);
+      return d2 - along * along > radius2 + kRoundings * d2;
+    }
+  };
+  AliasTable table_;  // over lamps, then emissive triangles
+  std::vector<Finite> finite_;
+  std::vector<uint32_t> infinite_;  // indices of suns and skies
   const Environment* skyAhead_ = nullptr;
   bool shared_ = false, exclusive_ = false, sky_ = false, strands_ = false;
   uint64_t triangles_ = 0;
@@ -127,8 +141,10 @@ template <class F>
 void Emitters::along(const Ray& ray, float tMax, bool escaped, int bounces, F&& f,
                      const Environment::Place& ahead) const {
   EmitterHit hit;
-  for (uint32_t i : finite_)
-    if (bounces <= lamps_[i].maxBounces && meets(lamps_[i], i, ray, tMax, bounces, ahead, hit)) f(hit);
+  for (const Finite& l : finite_) {
+    if (l.isPassedBy(ray)) continue;
+    if (bounces <= lamps_[l.lamp].maxBounces && meets(lamps_[l.lamp], l.lamp, ray, tMax, bounces, ahead, hit)) f(hit);
+  }
   if (!escaped) return;
   for (uint32_t i : infinite_)
     if (bounces <= lamps_[i].maxBounces && meets(lamps_[i], i, ray, tMax, bounces, ahead, hit)) f(hit);

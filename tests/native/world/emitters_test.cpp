@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Lamps as rays meet them.
+#include "world/emitters.h"
+
+#include <gtest/gtest.h>
+
+namespace wardmis {
+namespace {
+
+Light lampOf(LightType type, Vec3f at) {
+  Light l;
+  l.type = type;
+  l.toWorld.t = at;
+  return l;
+}
+
+// What a sample of a lamp aims at, a ray of that direction meets, up to the rim, near and far, for lamps of any size
+// and form: the sphere that rays are tested against first must hold all of the lamp. Rounding of the direction loses
+// at most 6e-8 of the distance at the rim; 2 % of the samples may do so.
+TEST(Emitters, RaysMeetWhatSamplesAimAt) {
+  for (const float size : {1e-3f, 1.0f, 1e3f}) {
+    const Vec3f at{3 * size, -2 * size, 5 * size};
+    Light disk = lampOf(LightType::kPoint, at), sphere = disk, spot = lampOf(LightType::kSpot, at);
+    disk.radius = sphere.radius = spot.radius = size;
+    sphere.facing = spot.facing = false;
+    spot.angle = 3;
+    Light square = lampOf(LightType::kArea, at);
+    square.sizeX = square.sizeY = 2 * size;
+    Light strip = square, ellipse = square, sheared = square;
+    strip.sizeX = 20 * size;
+    ellipse.ellipse = true, ellipse.sizeY = 6 * size;
+    sheared.toWorld.x = {1, 0.9f, 0};
+    for (const Light& light : {disk, sphere, spot, square, strip, ellipse, sheared}) {
+      Scene scene;
+      scene.lights = {light};
+      Geometry geometry(scene);
+      const std::vector<Environment> skies;
+      const Emitters emitters(scene, geometry, skies);
+      for (const float away : {1.5f, 10.0f, 1e4f}) {
+        Stream random(1, static_cast<uint64_t>(away));
+        int aimed = 0, met = 0;
+        for (int k = 0; k < 2000; ++k) {
+          const auto u = random.square();
+          const Vec3f from = at + normalize(Vec3f{static_cast<float>(u.x) - 0.5f, 0.4f, -1}) * (away * size);
+          const auto v = random.square();
+          const LightSample s = emitters.sample(from, emitters.choose({v.x, static_cast<float>(v.y)}));
+          if (!(s.pdf > 0) || isBlack(s.radiance)) continue;
+          Ray ray;
+          ray.origin = from, ray.direction = s.direction, ray.kind = kSeenByDiffuse;
+          ++aimed;
+          emitters.along(ray, 2 * s.distance, false, 0, [&](const EmitterHit& hit) {
+            ++met;
+            EXPECT_NEAR(hit.pdf / s.pdf, 1, 0.02) << size << " " << away;
+          });
+        }
+        EXPECT_GT(aimed, 1500) << size << " " << away;
+        EXPECT_GE(met, aimed - aimed / 50) << size << " " << away;
+        EXPECT_LE(met, aimed);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace wardmis
