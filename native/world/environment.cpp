@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <cmath>
+#include <cstring>
 
 #include "math/number.h"
 #include "math/warp.h"
@@ -179,6 +180,24 @@ void Environment::tabulateImage() {
   table_ = AliasTable(weights);
   integral_ = static_cast<float>(table_.sum());
   exists_ = !table_.empty();
+  const Texture& texture = scene.textures[static_cast<size_t>(world.texture)];
+  if (exists_ && !ball && image.width == width_ && image.height == height_ && texture.filter == Filter::kLinear &&
+      !image.filterEncoded)
+    makeTexels();
+}
+
+void Environment::makeTexels() {
+  const Texture& texture = scene_.textures[static_cast<size_t>(world_.texture)];
+  texels_.resize(static_cast<size_t>(width_ + 2) * static_cast<size_t>(height_ + 2));
+  tbb::parallel_for(-1, height_ + 1, [&](int y) {
+    for (int x = -1; x <= width_; ++x) {
+      const int column = wrappedTexel(x, width_, texture.wrapU), row = wrappedTexel(y, height_, texture.wrapV);
+      if (column < 0 || row < 0) continue;
+      const size_t from = static_cast<size_t>(row) * static_cast<size_t>(width_) + static_cast<size_t>(column);
+      const Rgb c = texelRgb(*image_, from);
+      texels_[texelAt(x, y)] = {c.x, c.y, c.z, table_.probability(static_cast<uint32_t>(from))};
+    }
+  });
 }
 
 Vec3f Environment::toImage(Vec3f d) const {
@@ -203,6 +222,36 @@ Rgb Environment::radiance(Vec3f direction, const SkyRay& ray) const {
   return imageAt(world_.map == SkyMap::kMirrorBall ? mirrorBall(image) : equirectangular(image));
 }
 
+// uv in [0, 1]^2, in the cell (x, y) of the table.
+void Environment::putInImage(Place& p, Vec2f uv, int x, int y) const {
+  p.uv = uv;
+  p.cell = static_cast<uint32_t>(y * width_ + x);
+  if (texels_.empty()) return;
+  const auto fall = [](float u, int n, float& share) {  // as texelFall()
+    const float at = u * static_cast<float>(n) - 0.5f;
+    const int i = static_cast<int>(at) - (at < 0 ? 1 : 0);
+    share = at - static_cast<float>(i);
+    return std::clamp(i, -1, n - 1);
+  };
+  p.cell = texelAt(x, y);
+  const int i = fall(uv.x, width_, p.uv.x), j = fall(uv.y, height_, p.uv.y);
+  p.texel = texelAt(i, j);
+}
+
+// The bilinear filter, all of a texel's numbers at once.
+Rgb Environment::filtered(uint32_t texel, Vec2f share) const {
+  using Lanes = float __attribute__((vector_size(16)));
+  const auto at = [&](uint32_t i) {
+    Lanes l;
+    std::memcpy(&l, &texels_[i], sizeof l);
+    return l;
+  };
+  const uint32_t above = texel + static_cast<uint32_t>(width_ + 2);
+  const Lanes c = (at(texel) * (1 - share.x) + at(texel + 1) * share.x) * (1 - share.y) +
+                  (at(above) * (1 - share.x) + at(above + 1) * share.x) * share.y;
+  return world_.radiance * Rgb{c[0], c[1], c[2]};
+}
+
 Rgb Environment::imageAt(Vec2f uv) const {
   TextureUse use;
   use.texture = world_.texture;
@@ -210,26 +259,31 @@ Rgb Environment::imageAt(Vec2f uv) const {
 }
 
 Environment::Place Environment::find(Vec3f direction) const {
-  Place p{this, direction, 0, 0, {0, 0}};
+  Place p{this, direction, 0, 0, 0, {0, 0}};
   if (oneMinusCos_ > 0) p.density = inCone(direction) ? 1 / (2 * kPi<float> * oneMinusCos_) : 0;
   if (!tabulated()) return p;
   const Vec3f image = toImage(direction);
-  p.uv = equirectangular(image);
-  const int x = std::clamp(static_cast<int>(p.uv.x * static_cast<float>(width_)), 0, width_ - 1);
-  const int y = std::clamp(static_cast<int>(p.uv.y * static_cast<float>(height_)), 0, height_ - 1);
-  p.cell = static_cast<uint32_t>(y * width_ + x);
+  const Vec2f uv = equirectangular(image);
+  const int x = std::clamp(static_cast<int>(uv.x * static_cast<float>(width_)), 0, width_ - 1);
+  const int y = std::clamp(static_cast<int>(uv.y * static_cast<float>(height_)), 0, height_ - 1);
   p.density = bands_[static_cast<size_t>(y)].density * stretch(image);
-  if (world_.map == SkyMap::kMirrorBall) p.uv = mirrorBall(image);
+  putInImage(p, world_.map == SkyMap::kMirrorBall ? mirrorBall(image) : uv, x, y);
   prefetch(p);
   return p;
 }
 
 void Environment::prefetch(const Place& place) const {
+  if (!texels_.empty()) {
+    const Texel* const first = &texels_[place.texel];
+    for (const Texel* texel : {first, first + width_ + 2}) fetch(texel), fetch(texel + 1);
+    return;
+  }
   table_.prefetchProbability(place.cell);
   if (image_ != nullptr) wardmis::prefetch(*image_, place.uv);
 }
 
 Environment::Look Environment::look(const Place& p, const SkyRay& ray) const {
+  if (!texels_.empty()) return {filtered(p.texel, p.uv), texels_[p.cell].probability * p.density};
   if (!tabulated()) return {radiance(p.direction, ray), p.density};
   return {world_.program ? radiance(p.direction, ray) : imageAt(p.uv), table_.probability(p.cell) * p.density};
 }
@@ -247,18 +301,18 @@ Vec3f Environment::inCell(uint32_t x, uint32_t y, float u, float v) const {
 Environment::Place Environment::sample(ChoicePoint u) const {
   if (oneMinusCos_ > 0) {
     const Vec3f d = Framef::around(axis_).toWorld(toCone(Vec2f{toCoordinate(u.x), u.y}, oneMinusCos_));
-    return {this, d, 0, 1 / (2 * kPi<float> * oneMinusCos_), {0, 0}};
+    return {this, d, 0, 0, 1 / (2 * kPi<float> * oneMinusCos_), {0, 0}};
   }
   const uint32_t cell = table_.sample(u.x);
   const uint32_t y = cell / static_cast<uint32_t>(width_), x = cell - y * static_cast<uint32_t>(width_);
   const float across = toCoordinate(u.x);
   const Vec3f image = inCell(x, y, across, u.y), world = fromImage(image);
   const float l = length(world);  // 1 / that of toImage() of the unit vector
-  Place p{this, world / l, cell, bands_[y].density * determinant_ * l * l * l, {0, 0}};
-  if (world_.map == SkyMap::kMirrorBall)
-    p.uv = mirrorBall(image);
-  else
-    p.uv = {(static_cast<float>(x) + across) / static_cast<float>(width_), heightOf(image)};
+  Place p{this, world / l, 0, 0, bands_[y].density * determinant_ * l * l * l, {0, 0}};
+  const Vec2f uv = world_.map == SkyMap::kMirrorBall
+                       ? mirrorBall(image)
+                       : Vec2f{(static_cast<float>(x) + across) / static_cast<float>(width_), heightOf(image)};
+  putInImage(p, uv, static_cast<int>(x), static_cast<int>(y));
   prefetch(p);
   return p;
 }

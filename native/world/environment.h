@@ -30,8 +30,9 @@ class Environment {
     const Environment* sky = nullptr;  // whose place it is; null: nobody's
     Vec3f direction{0, 0, 1};          // unit
     uint32_t cell = 0;
-    float density = 0;  // of directions in the cell, per solid angle
-    Vec2f uv{0, 0};     // in the sky's image
+    uint32_t texel = 0;  // of texels_: the lower left one of the four around the place
+    float density = 0;   // of directions in the cell, per solid angle
+    Vec2f uv{0, 0};      // in the sky's image; where there are texels_, its share of the next texel across and up
   };
   // Draws a direction; prefetch(u) asks for what that reads.
   Place sample(ChoicePoint u) const;
@@ -63,6 +64,12 @@ class Environment {
   Vec3f inCell(uint32_t x, uint32_t y, float u, float v) const;
   void prefetch(const Place& place) const;
   Rgb imageAt(Vec2f uv) const;
+  void makeTexels();
+  uint32_t texelAt(int x, int y) const {
+    return static_cast<uint32_t>(y + 1) * static_cast<uint32_t>(width_ + 2) + static_cast<uint32_t>(x + 1);
+  }
+  void putInImage(Place& place, Vec2f uv, int x, int y) const;
+  Rgb filtered(uint32_t texel, Vec2f share) const;
   // Solid angle in the image's frame over that of the world, where `image` is toImage() of a unit vector: a linear map
   // M takes the solid angle dw at d to |det M| / |M d|^3 dw.
   float stretch(Vec3f image) const { return determinant_ / (dot(image, image) * length(image)); }
@@ -80,6 +87,13 @@ class Environment {
   float matrix_[9] = {}, inverse_[9] = {}, determinant_ = 1;  // the determinant without its sign
   int width_ = 0, height_ = 0;                                // of the table, row 0 at the bottom (-z)
   AliasTable table_;
+  // Of an image with a cell of the table for each texel, its colours beside the cells' probabilities, so that a look
+  // at both reads two places of memory and not three; with a border of one texel as the texture goes on there. Empty of
+  // other images.
+  struct alignas(16) Texel {
+    float r, g, b, probability;
+  };
+  Table<Texel> texels_;
   // A row of the table lies between two polar angles; each is measured from the pole that is nearer to the row, by
   // 1 - cos, which is exact where cos alone is not.
   struct Band {
