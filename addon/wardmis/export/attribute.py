@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from .. import compat
+from .blender_pixels import decode_srgb, encode_srgb
 from .spectrum import of_bytes
 
 DEFAULT_COLOR = "color:"  # the name of a mesh's colours that are active for rendering
@@ -24,13 +25,14 @@ CENTER, RADIUS, POINT_RANDOM = (f"point info:{name}" for name in ("position", "r
 TYPES = {
     "FLOAT": ("value", 1),
     "INT": ("value", 1),
-    "INT8": ("value", 1),
     "BOOLEAN": ("value", 1),
     "FLOAT2": ("vector", 2),
     "FLOAT_VECTOR": ("vector", 3),
     "FLOAT_COLOR": ("color", 4),
     "BYTE_COLOR": ("color", 4),
 }
+if compat.ATTRIBUTES_ARE_BLENDERS:
+    TYPES |= {"INT8": ("value", 1), "QUATERNION": ("value", 4)}
 
 
 @dataclass(frozen=True)
@@ -39,8 +41,8 @@ class MeshAttribute:
     by_corner: bool  # else by vertex
 
 
-def read_attribute(mesh: Any, name: str) -> MeshAttribute | None:
-    """None where the mesh has none of the name that Cycles reads."""
+def read_attribute(mesh: Any, name: str, obj: Any = None) -> MeshAttribute | None:
+    """None where the mesh has none of the name that Cycles reads. `obj`: that has the mesh; it knows the names of vertex groups."""
     if name.startswith(OF_OBJECT):
         return None
     if name != DEFAULT_COLOR and name in mesh.uv_layers:
@@ -51,14 +53,49 @@ def read_attribute(mesh: Any, name: str) -> MeshAttribute | None:
         attribute = mesh.color_attributes[index] if 0 <= index < len(mesh.color_attributes) else None
     else:
         attribute = mesh.attributes.get(name)
-    if attribute is None or attribute.data_type not in TYPES or attribute.domain not in {"POINT", "CORNER", "FACE"}:
+    if attribute is None:
+        return _vertex_group(mesh, name, obj)
+    if attribute.data_type not in TYPES or attribute.domain not in {"POINT", "EDGE", "FACE", "CORNER"}:
         return None
     values = compat.attribute_values(attribute, *TYPES[attribute.data_type])
+    if attribute.domain == "EDGE":
+        values = _at_vertices(mesh, values, attribute.data_type)
     if attribute.data_type == "BYTE_COLOR":
         values[:, :3] = of_bytes(values[:, :3], compat.CYCLES)
     if attribute.domain == "FACE":
         values = values.take(compat.corner_faces(mesh), axis=0)
-    return MeshAttribute(np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0), attribute.domain != "POINT")
+    by_corner = attribute.domain in {"CORNER", "FACE"}
+    return MeshAttribute(np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0), by_corner)
+
+
+def _vertex_group(mesh: Any, name: str, obj: Any) -> MeshAttribute | None:
+    group = obj.vertex_groups.get(name) if obj is not None and compat.ATTRIBUTES_ARE_BLENDERS else None
+    return None if group is None else MeshAttribute(compat.vertex_weights(mesh, group.index), False)
+
+
+def _at_vertices(mesh: Any, values: np.ndarray, kind: str) -> np.ndarray:
+    """The mean of what the edges of each vertex have, (n,) or (n, width) float32, 0 where it has none.
+
+    Where Blender makes it, it is of the attribute's type: whether any is true, a whole number, bytes as an image has them.
+    """
+    is_bytes = kind == "BYTE_COLOR" and compat.ATTRIBUTES_ARE_BLENDERS
+    if is_bytes:
+        values = values.copy()
+        values[:, :3] = encode_srgb(values[:, :3])
+        values = np.rint(255 * values)
+    ends, count = compat.edge_vertices(mesh), len(mesh.vertices)
+    edges = np.maximum(np.bincount(ends.ravel(), minlength=count), 1)
+    columns = values.reshape(len(values), -1).repeat(2, axis=0).T
+    mean = np.stack([np.bincount(ends.ravel(), column, count) / edges for column in columns], axis=-1)
+    if compat.ATTRIBUTES_ARE_BLENDERS:
+        if kind == "BOOLEAN":
+            mean = np.ceil(mean)
+        elif kind in {"INT", "INT8"}:
+            mean = np.trunc(mean + np.copysign(0.5, mean))
+        elif is_bytes:
+            mean = np.floor(mean) / 255
+            mean[:, :3] = decode_srgb(mean[:, :3])
+    return mean.reshape((count, *values.shape[1:])).astype(np.float32)
 
 
 def generated(mesh: Any, positions: np.ndarray) -> tuple[tuple[float, ...], np.ndarray | None]:

@@ -67,3 +67,8 @@ def is_cut_off(image: Any) -> bool:
 def encode_srgb(v: np.ndarray) -> np.ndarray:
     curve = 1.055 * np.maximum(v, 0.0) ** (1 / 2.4) - 0.055
     return np.where(v <= 0.0031308, v * 12.92, curve).astype(np.float32)
+
+
+def decode_srgb(v: np.ndarray) -> np.ndarray:
+    curve = ((np.maximum(v, 0.0) + 0.055) / 1.055) ** 2.4
+    return np.where(v <= 0.04045, v / 12.92, curve).astype(np.float32)

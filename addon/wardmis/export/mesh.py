@@ -63,8 +63,8 @@ def wanted_of(materials: Iterable[MaterialData]) -> Wanted:
     )
 
 
-def gather_geometry(mesh: Any, wanted: Wanted, context: ExportContext) -> Geometry | None:
-    """None for a mesh without faces."""
+def gather_geometry(mesh: Any, wanted: Wanted, context: ExportContext, obj: Any = None) -> Geometry | None:
+    """None for a mesh without faces. `obj`: that has it, for the names of vertex groups."""
     if not mesh.polygons:
         return None
     corners = compat.triangle_corners(mesh)
@@ -81,7 +81,7 @@ def gather_geometry(mesh: Any, wanted: Wanted, context: ExportContext) -> Geomet
     shading = compat.shading(mesh)
     uv_sets = {name: uvs for name in sorted(wanted.uv_sets) if (uvs := compat.uvs(mesh, name)) is not None}
     attributes = {
-        name: found for name in sorted(wanted.attributes) if (found := read_attribute(mesh, name)) is not None
+        name: found for name in sorted(wanted.attributes) if (found := read_attribute(mesh, name, obj)) is not None
     }
     by_corner = bool(uv_sets) or any(a.by_corner for a in attributes.values())
     vertex_of_corner = compat.corner_vertices(mesh)

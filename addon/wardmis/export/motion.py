@@ -178,7 +178,7 @@ class Motion:
                 if time in times(shape.steps):
                     self._context.owner = shape.owner
                     with compat.whole_mesh(instance) as mesh:
-                        shape.at[time] = gather_geometry(mesh, shape.wanted, self._context)
+                        shape.at[time] = gather_geometry(mesh, shape.wanted, self._context, instance.object)
 
     def _finish(self, scene: SceneData) -> None:
         for placed in (p for all_of in self._placed.values() for p in all_of):

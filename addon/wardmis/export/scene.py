@@ -337,7 +337,7 @@ class _Gatherer:
             )
             return None
         with compat.whole_mesh(instance) as whole:
-            return gather_geometry(whole, wanted, self.context)
+            return gather_geometry(whole, wanted, self.context, instance.object)
 
     def _hair_geometry(self, _instance: Any, owner: Any, wanted: Wanted) -> Geometry | None:
         return gather_hair(owner, wanted, self._curves, self.context)

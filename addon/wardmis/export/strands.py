@@ -12,6 +12,7 @@ import numpy as np
 
 from .. import compat
 from .attribute import CENTER, DIAMETER, INTERCEPT, LENGTH, POINT_RANDOM, RADIUS, RANDOM, STRAND, TYPES
+from .blender_pixels import decode_srgb
 from .context import ExportContext, ExportError
 from .hashing import random_numbers
 from .mesh import Geometry, Wanted
@@ -124,7 +125,7 @@ def _roots(
     ]
     out = np.array(values, np.float32)
     if method == "mcol_on_emitter":  # bytes, as an image has them
-        out = np.where(out <= 0.04045, out / 12.92, ((np.maximum(out, 0) + 0.055) / 1.055) ** 2.4).astype(np.float32)
+        out = decode_srgb(out)
     return np.repeat(out, steps, axis=0)
 
 
