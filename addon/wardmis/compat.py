@@ -181,6 +181,23 @@ def vertex_weights(mesh: Any, group: int) -> np.ndarray:
     return weights
 
 
+# Whether Blender tells add-ons what geometry nodes have made of an object besides its own data.
+TELLS_EVALUATED_GEOMETRY = hasattr(bpy.types.Object, "evaluated_geometry")
+
+
+WHERE_INSTANCES_TELL_NOTHING = "in collections that are placed" if TELLS_EVALUATED_GEOMETRY else "before Blender 5"
+
+
+def evaluated_geometry(obj: Any) -> Any:
+    """A GeometrySet of an evaluated object; None: Blender does not tell it."""
+    return obj.evaluated_geometry() if TELLS_EVALUATED_GEOMETRY else None
+
+
+def whole_numbers(data: Any, name: str) -> np.ndarray:
+    """Of an attribute of the type INT, (n,) int32."""
+    return _foreach(data.attributes[name].data, "value", 1, np.int32)
+
+
 def corner_faces(mesh: Any) -> np.ndarray:
     """The face of every corner, (n,) int."""
     return np.repeat(np.arange(len(mesh.polygons)), _foreach(mesh.polygons, "loop_total", 1, np.int32))

@@ -416,6 +416,53 @@ class Filters(SceneTest):
         self.assertEqual(self.seen(), (1, 1, True))
 
 
+class OutOfReach(SceneTest):
+    """Attributes of instances that Blender does not tell add-ons are named."""
+
+    def placed(self, name: str = "Tint") -> None:
+        made = bpy.data.materials.new("Tinted")
+        made.use_nodes = True
+        tree = made.node_tree
+        node = tree.nodes.new("ShaderNodeAttribute")
+        node.attribute_type, node.attribute_name = "INSTANCER", name
+        tree.links.new(node.outputs["Color"], tree.nodes["Principled BSDF"].inputs["Base Color"])
+        self.shown, self.points = self.add_quad("Shown"), self.add_quad("Points")
+        self.shown.data.materials.append(made)
+        group = bpy.data.node_groups.new("Instances", "GeometryNodeTree")
+        for way in ("INPUT", "OUTPUT"):
+            compat.add_group_socket(group, "Geometry", "NodeSocketGeometry", way)
+        kinds = ("NodeGroupInput", "NodeGroupOutput", "GeometryNodeInstanceOnPoints", "GeometryNodeObjectInfo")
+        entry, end, points, source = (group.nodes.new(kind) for kind in kinds)
+        source.inputs["Object"].default_value = self.shown
+        group.links.new(entry.outputs[0], points.inputs["Points"])
+        group.links.new(source.outputs["Geometry"], points.inputs["Instance"])
+        group.links.new(points.outputs[0], end.inputs[0])
+        self.points.modifiers.new("Nodes", "NODES").node_group = group
+
+    def told(self) -> list[str]:
+        return [note for note in self.gather().notes if "reads 'Tint' of its instances" in note]
+
+    def test_of_nodes(self):
+        self.placed()
+        notes = self.told()
+        self.assertEqual(len(notes), 0 if compat.TELLS_EVALUATED_GEOMETRY else 1, notes)
+        self.points["Tint"] = 0.5  # which is found instead
+        self.points.update_tag()
+        self.assertEqual(self.told(), [])
+
+    def test_of_nodes_in_a_collection_that_is_placed(self):
+        self.placed()
+        group = bpy.data.collections.new("Group")
+        for obj in (self.shown, self.points):
+            self.scene.collection.objects.unlink(obj)
+            group.objects.link(obj)
+        empty = self.add("Empty", None)
+        empty.instance_type, empty.instance_collection = "COLLECTION", group
+        notes = self.told()
+        self.assertEqual(len(notes), 1, notes)
+        self.assertIn("object 'Empty'", notes[0])
+
+
 class Visibility(SceneTest):
     def test_flags_of_objects_and_their_instancers(self):
         quad = self.add_quad()

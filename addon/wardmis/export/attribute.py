@@ -110,6 +110,9 @@ def generated(mesh: Any, positions: np.ndarray) -> tuple[tuple[float, ...], np.n
     return tuple(matrix.reshape(-1).tolist()), (undeformed * scale + offset).astype(np.float32)
 
 
+NOWHERE = (0.0, 0.0, 0.0, 0.0)  # the attribute of an object that does not have it; what one has has an alpha, as a rule
+
+
 def object_attributes(names: Iterable[str], owners: dict[str, Any]) -> tuple[tuple[str, tuple[float, ...]], ...]:
     """Of these names those that begin as OF_OBJECT, each with what `owners`, by how it begins, have."""
     return tuple((name, object_attribute(name, owners)) for name in sorted(names) if name.startswith(OF_OBJECT))
@@ -123,7 +126,7 @@ def object_attribute(name: str, owners: dict[str, Any]) -> tuple[float, float, f
         if values is not None:
             r, g, b = (*values * 3,)[:3] if len(values) == 1 else (*values, 0.0)[:3]
             return r, g, b, values[3] if len(values) == 4 else 1.0
-    return 0.0, 0.0, 0.0, 0.0
+    return NOWHERE
 
 
 def _property(owner: Any, name: str) -> tuple[float, ...] | None:

@@ -4,18 +4,19 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from .. import compat
-from .attribute import OF_OBJECT, object_attributes
+from .attribute import NOWHERE, OF_OBJECT, object_attributes
 from .camera import export_camera, export_film
 from .context import ExportContext, ExportError, Tell
 from .hashing import random_of
 from .image import WithinMemory
+from .instance_attributes import InstanceAttributes, are_out_of_reach
 from .light import export_light
 from .material import by_rules_of_cycles, export_material, is_matte
 from .mesh import Geometry, Wanted, assemble, gather_geometry, has_bent_normals, transformed, wanted_of
@@ -134,23 +135,11 @@ def _random_of(obj: Any, instance: Any) -> float:
     return random_of(instance.random_id if instance.is_instance else None, obj.name)
 
 
-def _owners_of_attributes(obj: Any, instance: Any) -> dict[str, tuple[Any, ...]]:
-    """What has the attributes of the object, of what places it, and of the place, by how their names begin."""
-    instancer = instance.parent if instance.is_instance and instance.parent is not None else obj
-    return {"object:": (obj, obj.data), "instancer:": (instancer, instancer.data), "instance:": (_place_on(instance),)}
-
-
 def _place_on(instance: Any) -> dict[str, tuple[float, ...]]:
     """Of what brings an instance; as Cycles has it."""
     if not instance.is_instance:
         return {}
     return {"UV": (*instance.uv, 0.0), "Generated": tuple(0.5 * x - 0.5 for x in instance.orco)}
-
-
-def _lamp_object(obj: Any, instance: Any) -> LampObject:
-    r, g, b, alpha = obj.color
-    owners = _owners_of_attributes(obj, instance)
-    return LampObject((r, g, b), alpha, float(obj.pass_index), _random_of(obj, instance), owners)
 
 
 def _is_gas_domain(obj: Any) -> bool:
@@ -178,6 +167,7 @@ class _Gatherer:
         self._mesh_index: dict[tuple[int, str, tuple[int, ...]], int | None] = {}
         self._geometry: dict[tuple[int, str, Wanted], Geometry | None] = {}
         self._hidden: dict[int, frozenset[str]] = {}
+        self._instance_attributes = InstanceAttributes()
         self._curves = curve_settings(depsgraph.scene_eval)
 
     def gather_objects(self, depsgraph: Any) -> None:
@@ -203,7 +193,7 @@ class _Gatherer:
                 self._place(obj, instance, "points", obj.data, self._points_geometry)
             elif kind == "LIGHT":
                 matrix, hidden = self._matrix(instance), self._hidden_from(obj, instance)
-                light = export_light(obj.data, obj.name, matrix, hidden, self.context, _lamp_object(obj, instance))
+                light = export_light(obj.data, obj.name, matrix, hidden, self.context, self._lamp_object(obj, instance))
                 if light is not None:
                     light.on_catchers = obj.original.is_shadow_catcher
                     self.lights.append(light)
@@ -306,9 +296,33 @@ class _Gatherer:
             if program.reads("object-random"):
                 data.random = _random_of(obj, instance)
             if any(name.startswith(OF_OBJECT) for name in program.attributes):
-                owners = _owners_of_attributes(obj, instance) | {"layer:": self.context.layer}
+                owners = self._owners_of_attributes(obj, instance) | {"layer:": self.context.layer}
                 named = object_attributes(program.attributes, owners)
+                self._note_out_of_reach(instance, named)
                 data.attributes = tuple(sorted({*data.attributes, *named}))
+
+    def _owners_of_attributes(self, obj: Any, instance: Any) -> dict[str, tuple[Any, ...]]:
+        """What has the attributes of the object, of what places it, and of the place, by how their names begin; as Blender looks."""
+        own = obj, obj.data
+        by_instancer = own
+        if instance.is_instance:
+            particles = () if instance.particle_system is None else (instance.particle_system.settings,)
+            parents = () if instance.parent is None else (instance.parent,)
+            by_instancer = *particles, *self._instance_attributes.of(instance), *parents, *own
+        return {"object:": own, "instancer:": by_instancer, "instance:": (_place_on(instance),)}
+
+    def _note_out_of_reach(self, instance: Any, named: Iterable[tuple[str, tuple[float, ...]]]) -> None:
+        for name, value in named:
+            if name.startswith("instancer:") and value == NOWHERE and are_out_of_reach(instance):
+                self.context.note(
+                    f"object '{instance.parent.name}': an Attribute node of what it places reads '{name[len('instancer:') :]}' of its "
+                    f"instances; this is not supported {compat.WHERE_INSTANCES_TELL_NOTHING}; 0 is used instead"
+                )
+
+    def _lamp_object(self, obj: Any, instance: Any) -> LampObject:
+        r, g, b, alpha = obj.color
+        owners = self._owners_of_attributes(obj, instance)
+        return LampObject((r, g, b), alpha, float(obj.pass_index), _random_of(obj, instance), owners)
 
     def _add_mesh(
         self, instance: Any, kind: str, source: Any, materials: tuple[int, ...], gather: Callable[..., Geometry | None]

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What Attribute nodes read: of every domain and type, and by names that are not the user's."""
 
-import bpy
 import numpy as np
-from stage import add, ball, box, painted, scene, stage
+from stage import add, ball, box, diffuse, feed, painted, scene, sheet, stage
+
+from scenes.instances import geometry_nodes, particles
 
 
 def read(name, output="Vector", kind="GEOMETRY"):
@@ -35,8 +36,6 @@ def vertex_groups():
 @scene
 def vertex_groups_of_instances():
     """Of a mesh that geometry nodes place."""
-    from scenes.instances import geometry_nodes
-
     stage()
     shown = box(read("Weights"), location=(0, 0, -5), scale=(0.4, 0.4, 0.4))
     shown.vertex_groups.new(name="Weights").add([0, 1, 4, 6], 0.8, "REPLACE")
@@ -110,3 +109,99 @@ def quaternions():
     stage()
     made = ball(read("Turn"), location=(0, 0, 1), fineness=8)
     give(made, "Turn", "QUATERNION", "POINT", width=4)
+
+
+def link(tree, kind, *sources, **values):
+    """A geometry node whose first inputs are linked, and the others, by name, are set or linked; its first output."""
+    made = tree.nodes.new(f"GeometryNode{kind}")
+    for socket, source in zip(made.inputs, sources):
+        tree.links.new(source, socket)
+    for name, value in values.items():
+        feed(tree, made.inputs[name.replace("_", " ")], value)
+    return made.outputs[0]
+
+
+def tinted(tree, geometry, name="Tint"):
+    """Instances with a colour for each."""
+    stored = tree.nodes.new("GeometryNodeStoreNamedAttribute")
+    stored.domain, stored.data_type = "INSTANCE", "FLOAT_VECTOR"
+    tree.links.new(geometry, stored.inputs[0])
+    next(s for s in stored.inputs if s.name == "Name").default_value = name
+    colors = tree.nodes.new("FunctionNodeRandomValue")
+    colors.data_type = "FLOAT_VECTOR"
+    tree.links.new(link(tree, "InputIndex"), next(s for s in colors.inputs if s.name == "ID"))
+    tree.links.new(
+        next(s for s in colors.outputs if s.type == "VECTOR"),
+        next(s for s in stored.inputs if s.name == "Value" and s.type == "VECTOR"),
+    )
+    return stored.outputs[0]
+
+
+def small_box(tree, of):
+    made = tree.nodes.new("GeometryNodeMeshCube")
+    made.inputs[0].default_value = 0.4, 0.3, 0.5
+    return link(tree, "SetMaterial", made.outputs[0], Material=of)
+
+
+def by_nodes(build):
+    made = box(location=(0, 0, 1), scale=(1.3, 1, 0.7))
+    geometry_nodes(made, build)
+
+
+@scene(since=(5, 0))
+def of_instances():
+    """Before, Blender does not tell them."""
+    stage()
+    of = read("Tint", "Color", "INSTANCER")
+    by_nodes(lambda tree, points: tinted(tree, link(tree, "InstanceOnPoints", points, Instance=small_box(tree, of))))
+
+
+@scene(since=(5, 0))
+def of_instances_of_objects():
+    stage()
+    shown = box(read("Tint", "Vector", "INSTANCER"), location=(0, 0, -5), scale=(0.2, 0.3, 0.2))
+
+    def build(tree, points):
+        found = tree.nodes.new("GeometryNodeObjectInfo")
+        found.inputs["Object"].default_value, found.inputs["As Instance"].default_value = shown, True
+        return tinted(tree, link(tree, "InstanceOnPoints", points, Instance=found.outputs["Geometry"]))
+
+    by_nodes(build)
+
+
+@scene(since=(5, 0))
+def of_nested_instances():
+    """With other geometry beside the inner instances, and "id"s of which some are the same."""
+    stage()
+    of = read("Tint", "Vector", "INSTANCER")
+
+    def build(tree, points):
+        inner = link(tree, "MeshLine", Count=3)
+        inner.node.inputs["Start Location"].default_value = 0.07, 0.05, 0.3
+        inner.node.inputs["Offset"].default_value = 0.1, 0.1, 0.35
+        placed = tinted(tree, link(tree, "InstanceOnPoints", inner, Instance=small_box(tree, of)))
+        joined = link(tree, "JoinGeometry", placed)
+        tree.links.new(small_box(tree, of), joined.node.inputs[0])
+        index = link(tree, "InputIndex")
+        half = tree.nodes.new("ShaderNodeMath")
+        half.operation, half.inputs[1].default_value = "MODULO", 5
+        tree.links.new(index, half.inputs[0])
+        numbered = link(tree, "SetID", points, ID=half.outputs[0])
+        return tinted(tree, link(tree, "InstanceOnPoints", numbered, Instance=joined, Scale=(0.6, 0.6, 0.6)), "Tint")
+
+    by_nodes(build)
+
+
+@scene
+def of_what_places():
+    """Settings of particles, the object that places, the object itself, their data: in Blender's order."""
+    stage()
+    for x, names in enumerate(("abcd", "bcd", "cd", "d")):
+        shown = box(read("Tint", "Fac", "INSTANCER"), location=(x - 1.5, 0, -5), scale=(0.5, 0.5, 0.5))
+        emitter = sheet(diffuse(), size=0.8)
+        emitter.location = 1.1 * x - 1.7, 0, 0.5
+        made = particles(emitter, render_type="OBJECT", instance_object=shown, count=4, particle_size=0.5)
+        owners = {"a": made.particle_systems[0].settings, "b": made, "c": shown, "d": shown.data}
+        for name in names:
+            owners[name]["Tint"] = {"a": 0.8, "b": 0.5, "c": 0.3, "d": 0.1}[name]
+        made.data["Tint"] = 0.95
