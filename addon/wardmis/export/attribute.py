@@ -13,6 +13,7 @@ from .. import compat
 from .blender_pixels import decode_srgb, encode_srgb
 from .spectrum import of_bytes
 
+GENERATED = "GENERATED"  # Generated coordinates of each point, where no map makes them
 DEFAULT_COLOR = "color:"  # the name of a mesh's colours that are active for rendering
 OF_OBJECT = ("object:", "instancer:", "layer:", "instance:")  # how names of attributes begin that are not the mesh's
 # what the nodes Curves Info and Point Info tell: names of attributes that no file can have by chance
@@ -98,13 +99,19 @@ def _at_vertices(mesh: Any, values: np.ndarray, kind: str) -> np.ndarray:
     return mean.reshape((count, *values.shape[1:])).astype(np.float32)
 
 
-def generated(mesh: Any, positions: np.ndarray) -> tuple[tuple[float, ...], np.ndarray | None]:
-    """The map from object space to Generated coordinates, and these for each vertex where modifiers have moved them."""
+def texture_space(mesh: Any) -> tuple[np.ndarray, np.ndarray]:
+    """The scale, (3,), and offset, (3,), that make Generated coordinates of those of an object."""
     location, size = np.array(mesh.texspace_location), np.array(mesh.texspace_size)
     scale = np.divide(0.5, size, out=size.copy(), where=size != 0)
-    offset = 0.5 - location * scale
+    return scale, 0.5 - location * scale
+
+
+def generated(mesh: Any, positions: np.ndarray) -> tuple[tuple[float, ...], np.ndarray | None]:
+    """The map from object space to Generated coordinates, and these for each vertex where modifiers have moved them."""
+    scale, offset = texture_space(mesh)
     matrix = np.column_stack([np.diag(scale), offset])
     undeformed = compat.undeformed_positions(mesh)
+    size = np.array(mesh.texspace_size)
     if np.allclose(undeformed, positions, rtol=0, atol=1e-6 * max(1e-30, float(np.abs(size).max()))):
         return tuple(matrix.reshape(-1).tolist()), None
     return tuple(matrix.reshape(-1).tolist()), (undeformed * scale + offset).astype(np.float32)

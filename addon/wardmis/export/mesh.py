@@ -14,7 +14,7 @@ import numpy as np
 
 from .. import compat
 from . import octahedral
-from .attribute import CENTER, RADIUS, generated, read_attribute
+from .attribute import CENTER, GENERATED, RADIUS, generated, read_attribute
 from .context import ExportContext, ExportError
 from .model import MaterialData, MeshData, PrimitiveData
 from .tangent import shared_tangents
@@ -110,7 +110,7 @@ def gather_geometry(mesh: Any, wanted: Wanted, context: ExportContext, obj: Any 
     if wanted.generated:
         geometry.generated, undeformed = generated(mesh, positions)
         if undeformed is not None:
-            geometry.attributes["GENERATED"] = undeformed if corner_of is None else undeformed.take(corner_of, axis=0)
+            geometry.attributes[GENERATED] = undeformed if corner_of is None else undeformed.take(corner_of, axis=0)
     _check_directions(geometry, mesh, context)
     context.check_cancelled()
     for name in sorted(wanted.tangents):

@@ -11,7 +11,19 @@ from typing import Any
 import numpy as np
 
 from .. import compat
-from .attribute import CENTER, DIAMETER, INTERCEPT, LENGTH, POINT_RANDOM, RADIUS, RANDOM, STRAND, TYPES
+from .attribute import (
+    CENTER,
+    DIAMETER,
+    GENERATED,
+    INTERCEPT,
+    LENGTH,
+    POINT_RANDOM,
+    RADIUS,
+    RANDOM,
+    STRAND,
+    TYPES,
+    texture_space,
+)
 from .blender_pixels import decode_srgb
 from .context import ExportContext, ExportError
 from .hashing import random_numbers
@@ -66,6 +78,10 @@ def gather_hair(obj: Any, wanted: Wanted, settings: tuple[str, int], context: Ex
     geometry = _curves(np.concatenate(points), np.concatenate(radii), offsets, settings, np.array(slots))
     _add_uvs(geometry, {name: np.concatenate(f) for name, f in uvs.items() if all(v is not None for v in f)})
     geometry.attributes |= {n: np.concatenate(f) for n, f in colors.items() if all(v is not None for v in f)}
+    if wanted.generated:  # those of its root, all along a strand
+        scale, offset = texture_space(obj.data)
+        roots = geometry.positions[offsets[:-1]] * scale + offset
+        geometry.attributes[GENERATED] = np.repeat(roots.astype(np.float32), lengths, axis=0)
     return _finished(geometry, offsets, wanted, "the hair", context)
 
 

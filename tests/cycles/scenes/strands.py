@@ -145,6 +145,50 @@ def curves_info_of_hair():
     ball(told("HairInfo", **{"Is Strand": 0.5}), location=(0, 0, 1.6), radius=0.3)
 
 
+def generated(tree):
+    return add(tree, "TexCoord").outputs["Generated"]
+
+
+def furry_ball(of, **settings):
+    sunny()
+    shape("THICK")
+    made = ball(of, location=(0, 0, 1.2), radius=0.8, fineness=12)
+    values = {"type": "HAIR", "render_type": "PATH", "physics_type": "NEWTON", "hair_length": 0.5}
+    values |= {"count": 150, "root_radius": 6.0}
+    particles(made, **(values | settings)).show_instancer_for_render = True
+    made.scale = 1.3, 1, 0.8
+
+
+@scene
+def generated_of_hair():
+    furry_ball(painted(generated))
+
+
+@scene
+def generated_of_children():
+    """Where the emitter has been moved by a modifier, and by what nodes read without a link."""
+    furry_ball(
+        painted(lambda tree: add(tree, "TexGradient").outputs[0]), child_type="INTERPOLATED", rendered_child_count=3
+    )
+    made = next(o for o in bpy.context.scene.objects if o.particle_systems)
+    made.modifiers.new("Bend", "SIMPLE_DEFORM").angle = 0.5
+
+
+@scene
+def generated_of_flat_fur():
+    sunny()
+    shape("THICK")
+    furry(painted(generated))
+
+
+@scene
+def generated_of_curves():
+    """They have none: it is where they are."""
+    sunny()
+    shape("THICK")
+    loops(0.03, painted(generated))
+
+
 @scene
 def point_info():
     points(told("PointInfo", Random=0.9, Radius=3), radius=0.14)
