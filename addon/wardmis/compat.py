@@ -124,6 +124,11 @@ def vertex_normals(mesh: Any) -> np.ndarray:
     return _foreach(mesh.vertex_normals, "vector", 3, np.float32)
 
 
+def face_normals(mesh: Any) -> np.ndarray:
+    """(n, 3) float32."""
+    return _foreach(mesh.polygons, "normal", 3, np.float32)
+
+
 def corner_normals(mesh: Any) -> np.ndarray:
     """(n, 3) float32."""
     if VERSION >= (4, 1, 0):

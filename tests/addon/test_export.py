@@ -417,7 +417,7 @@ class Filters(SceneTest):
 
 
 class OutOfReach(SceneTest):
-    """Attributes of instances that Blender does not tell add-ons are named."""
+    """Attributes of instances that Blender does not tell add-ons, and of Cycles' own, are named."""
 
     def placed(self, name: str = "Tint") -> None:
         made = bpy.data.materials.new("Tinted")
@@ -449,6 +449,12 @@ class OutOfReach(SceneTest):
         self.points["Tint"] = 0.5  # which is found instead
         self.points.update_tag()
         self.assertEqual(self.told(), [])
+
+    def test_what_cycles_makes_of_a_mesh(self):
+        self.placed("Tint")
+        node = next(n for n in self.shown.active_material.node_tree.nodes if n.type == "ATTRIBUTE")
+        node.attribute_type, node.attribute_name = "GEOMETRY", "pointiness"
+        self.assertEqual(len([n for n in self.gather().notes if "reads 'pointiness', which Cycles makes" in n]), 1)
 
     def test_of_nodes_in_a_collection_that_is_placed(self):
         self.placed()

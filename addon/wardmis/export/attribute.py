@@ -16,6 +16,7 @@ from .spectrum import of_bytes
 GENERATED = "GENERATED"  # Generated coordinates of each point, where no map makes them
 DEFAULT_COLOR = "color:"  # the name of a mesh's colours that are active for rendering
 OF_OBJECT = ("object:", "instancer:", "layer:", "instance:")  # how names of attributes begin that are not the mesh's
+OF_CYCLES = "cycles:"  # how those begin that Cycles makes
 # what the nodes Curves Info and Point Info tell: names of attributes that no file can have by chance
 STRAND, INTERCEPT, LENGTH, DIAMETER, RANDOM = (
     f"curves info:{name}" for name in ("strand", "intercept", "length", "diameter", "random")
@@ -46,6 +47,8 @@ def read_attribute(mesh: Any, name: str, obj: Any = None) -> MeshAttribute | Non
     """None where the mesh has none of the name that Cycles reads. `obj`: that has the mesh; it knows the names of vertex groups."""
     if name.startswith(OF_OBJECT):
         return None
+    if name.startswith(OF_CYCLES):
+        return _of_cycles(mesh, name[len(OF_CYCLES) :])
     if name != DEFAULT_COLOR and name in mesh.uv_layers:
         uvs = compat.uvs(mesh, name)
         return None if uvs is None else MeshAttribute(uvs, True)
@@ -67,6 +70,14 @@ def read_attribute(mesh: Any, name: str, obj: Any = None) -> MeshAttribute | Non
         values = values.take(compat.corner_faces(mesh), axis=0)
     by_corner = attribute.domain in {"CORNER", "FACE"}
     return MeshAttribute(np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0), by_corner)
+
+
+def _of_cycles(mesh: Any, name: str) -> MeshAttribute | None:
+    if name == "N":  # smooth, however the mesh is shaded
+        return MeshAttribute(compat.vertex_normals(mesh), False)
+    if name == "Ng":
+        return MeshAttribute(compat.face_normals(mesh).take(compat.corner_faces(mesh), axis=0), True)
+    return None
 
 
 def _vertex_group(mesh: Any, name: str, obj: Any) -> MeshAttribute | None:

@@ -8,8 +8,16 @@ from scenes.instances import geometry_nodes, particles
 
 
 def read(name, output="Vector", kind="GEOMETRY"):
+    """How far its values are from 0."""
     settings = {"attribute_type": kind, "attribute_name": name}
-    return painted(lambda tree: add(tree, "Attribute", settings).outputs[output])
+
+    def build(tree):
+        told = add(tree, "Attribute", settings).outputs[output]
+        absolute = add(tree, "VectorMath", {"operation": "ABSOLUTE"})
+        tree.links.new(told, absolute.inputs[0])
+        return absolute.outputs[0]
+
+    return painted(build)
 
 
 def give(made, name, kind, domain, key="value", width=1, most=1):
@@ -109,6 +117,53 @@ def quaternions():
     stage()
     made = ball(read("Turn"), location=(0, 0, 1), fineness=8)
     give(made, "Turn", "QUATERNION", "POINT", width=4)
+
+
+def named(*outputs):
+    """A row of balls with UVs, colours and, under each name, an attribute of the user's; `outputs`: names, and outputs to show."""
+    stage()
+    for k, (name, output) in enumerate(outputs):
+        made = ball(read(name, output), location=(1.3 * k - 0.65 * (len(outputs) - 1), 0, 0.8), radius=0.6, fineness=10)
+        made.rotation_euler = 0.3, 0.4, 0.2
+        give(made, "Colours", "FLOAT_COLOR", "POINT", key="color", width=4)
+        made.data.color_attributes.render_color_index = 0
+        if name not in made.data.attributes:
+            give(made, name, "FLOAT_VECTOR", "POINT", key="vector", width=3)
+
+
+@scene
+def named_generated():
+    named(("generated", "Color"), ("generated", "Fac"), ("generated", "Alpha"))
+
+
+@scene
+def named_uv():
+    stage()
+    for k, output in enumerate(("Vector", "Fac", "Alpha")):
+        made = sheet(read("uv", output), size=0.6)
+        made.location = 1.3 * k - 1.3, 0, 0.6
+        give(made, "uv", "FLOAT_VECTOR", "POINT", key="vector", width=3)
+
+
+@scene
+def named_as_in_cycles():
+    named(("color", "Color"), ("vertex_color", "Color"), ("velocity", "Alpha"))
+
+
+@scene(without=(5, 2))
+def named_as_normals():
+    """In 5.2 they are named, and 0."""
+    named(("N", "Color"), ("Ng", "Color"))
+
+
+@scene
+def color_attributes_named_as_in_cycles():
+    """Color Attribute finds none of these."""
+    stage()
+    for k, (name, output) in enumerate((("color", "Color"), ("color", "Alpha"), ("uv", "Color"))):
+        of = painted(lambda tree, n=name, o=output: add(tree, "VertexColor", {"layer_name": n}).outputs[o])
+        made = ball(of, location=(1.3 * k - 1.3, 0, 0.8), radius=0.6, fineness=8)
+        give(made, name, "FLOAT_COLOR", "POINT", key="color", width=4)
 
 
 def link(tree, kind, *sources, **values):

@@ -22,6 +22,8 @@ from ..attribute import (
 )
 from ..socket_value import own_value
 from ..tree import NodeUse
+from .attribute_names import ALL as NAMES_OF_CYCLES
+from .attribute_names import known_as, place_of
 from .builder import Value, constant, is_zero
 from .reader import Reader, kind_of_socket
 
@@ -85,16 +87,22 @@ def _tangent(use: NodeUse, _output: Any, p: Reader) -> Value:
 
 
 # where attributes of other things than geometry are kept, on the node of the object
-ATTRIBUTE_PREFIX = {"GEOMETRY": "", "OBJECT": "object:", "INSTANCER": "instancer:", "VIEW_LAYER": "layer:"}
+ATTRIBUTE_PREFIX = {"OBJECT": "object:", "INSTANCER": "instancer:", "VIEW_LAYER": "layer:"}
 
 
 def _attribute(use: NodeUse, output: Any, p: Reader) -> Value:
-    name = ATTRIBUTE_PREFIX[use.node.attribute_type] + use.node.attribute_name
-    return _attribute_output(name, output, p)
+    name, kind = use.node.attribute_name, use.node.attribute_type
+    if kind != "GEOMETRY":
+        return _attribute_output(ATTRIBUTE_PREFIX[kind] + name, output, p)
+    place = place_of(name, output, p)
+    return _attribute_output(known_as(use, name), output, p) if place is None else place
 
 
 def _vertex_color(use: NodeUse, output: Any, p: Reader) -> Value:
-    return _attribute_output(use.node.layer_name or DEFAULT_COLOR, output, p)
+    name = use.node.layer_name
+    if name in NAMES_OF_CYCLES:  # it finds neither Cycles' nor the user's
+        return 0.0 if output.name == "Alpha" else (0.0, 0.0, 0.0)
+    return _attribute_output(name or DEFAULT_COLOR, output, p)
 
 
 def _attribute_output(name: str, output: Any, p: Reader) -> Value:
