@@ -257,6 +257,25 @@ TEST(Glb, ReadsLightsThatTakeAwayAndEnd) {
   EXPECT_EQ(scene.lights[0].maxBounces, 3);
 }
 
+TEST(Glb, ReadsWhatCatchesShadows) {
+  GlbBuilder b = square();
+  const Scene usual = read(b);
+  EXPECT_FALSE(usual.instances.at(0).shadowCatcher);
+  b.extension() = {{"version", 1}};
+  b.extension()["lights"] = {{{"type", "point"}, {"intensity", 2}},
+                             {{"type", "point"}, {"intensity", 2}, {"onCatchers", false}}};
+  json& nodes = b.root["nodes"];
+  nodes[0]["extensions"]["WARDMIS_scene"] = {{"shadowCatcher", true}, {"light", 0}};
+  nodes.push_back({{"extensions", {{"WARDMIS_scene", {{"light", 1}}}}}});
+  b.root["scenes"] = {{{"nodes", json::array()}}};
+  for (size_t i = 0; i < nodes.size(); ++i) b.root["scenes"][0]["nodes"].push_back(i);
+  const Scene scene = read(b);
+  EXPECT_TRUE(scene.instances.at(0).shadowCatcher);
+  ASSERT_EQ(scene.lights.size(), 2u);
+  EXPECT_TRUE(scene.lights[0].onCatchers);
+  EXPECT_FALSE(scene.lights[1].onCatchers);
+}
+
 TEST(Glb, MultipliesTheHierarchy) {
   GlbBuilder b = square();
   b.root["nodes"] = {
