@@ -264,6 +264,11 @@ def max_bounces(light: Any) -> int:
     return int(getattr(getattr(light, "cycles", None), "max_bounces", 1024))
 
 
+def transparent_shadow(material: Any) -> bool:
+    """Whether what it lets through shows in its shadow; it was Cycles' own setting until 4.2."""
+    return bool(getattr(material, "use_transparent_shadow", getattr(material.cycles, "use_transparent_shadow", True)))
+
+
 def light_has_soft_falloff(light: Any) -> bool:
     """Whether a point or spot light with a radius is a disk that faces the shading point (always, until the option came)."""
     return bool(getattr(light, "use_soft_falloff", True))
@@ -444,9 +449,19 @@ def cycles_samples(cycles: Any, first: int, count: int) -> list[tuple[Any, str, 
     ]
 
 
-def shadow_terminator_owner(obj: Any) -> Any:
-    """Who has an object's `shadow_terminator_*`: they were Cycles' own until 4.2."""
-    return obj if hasattr(obj, "shadow_terminator_geometry_offset") else getattr(obj, "cycles", None)
+def without_shadow_terminator(obj: Any) -> list[tuple[Any, str, float]]:
+    """Settings by which Cycles moves no rays of shadows away from smooth surfaces; they were its own until 4.2."""
+    owner = obj if hasattr(obj, "shadow_terminator_geometry_offset") else getattr(obj, "cycles", None)
+    names = [p.identifier for p in owner.bl_rna.properties] if owner is not None else []
+    return [(owner, name, 0.0) for name in names if name.startswith("shadow_terminator_")]
+
+
+def working_space() -> str:
+    """The colour space in which the file's scenes are linear: another than this can be chosen since 5.0."""
+    return str(getattr(getattr(bpy.data, "colorspace", None), "working_space", LINEAR))
+
+
+LINEAR = "Linear Rec.709"
 
 
 # --- the user interface ---------------------------------------------------------------------------------------------

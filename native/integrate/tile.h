@@ -71,15 +71,16 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
       light = nullptr;
     }
   }
-  if (met != nullptr && met->holdout) return sum;
-  pixel.alpha += covered || hit.valid() ? 1.0f : 0.0f;
-  if (!hit.valid()) return sum;
+  const float shown = (seenThrough.x + seenThrough.y + seenThrough.z) / 3;  // of what is met, by what is before it
+  const bool hole = met != nullptr ? met->holdout : !covered;
+  pixel.alpha += hole ? 1 - shown : 1;
+  if (met == nullptr || met->holdout) return sum;
 
   const auto x = interact<N, K>(world.scene, world.geometry, ray, hit);
   const auto& s = x.surface;
   if constexpr ((N & kNeedsLobes) != 0)
     if (s.holdout > 0) {
-      pixel.alpha -= std::min(s.holdout, 1.0f);
+      pixel.alpha -= std::min(s.holdout, 1.0f) * shown;
       if (s.holdout >= 1) return sum;
     }
   sum += x.emission * seenThrough;
@@ -88,8 +89,8 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
     note(*data, world, hit, x, sample == 0);
   }
   if (sample == 0) pixel.depth = in.camera.depth(ray, hit.t);
-  pixel.normal += x.frame.z;
-  pixel.albedo += s.albedo();
+  pixel.normal += x.frame.z * shown;
+  pixel.albedo += s.albedo() * seenThrough;
   const auto addLight = [&](LightPixel::Sums& sums, const std::array<Rgb, kComponents>& values, Rgb by) {
     for (size_t c = 0; c < kComponents; ++c) DataPixel::add(sums[c], values[c] * by);
   };

@@ -104,9 +104,11 @@ Rgb transmittance(const RenderScene& world, const Ray& shadow) {
   for (;;) {
     const Hit hit = world.accel.intersect(ray);
     if (!hit.valid()) return left;
-    if (!detail::mayPass(world, ray, hit, world.mostTransparent)) return kNone;
-    const auto x = interact<N, K>(world.scene, world.geometry, ray, hit);
     const Shape& shape = world.geometry.shapes[hit.shape];
+    if (!detail::mayPass(world, ray, hit, world.mostTransparent) ||
+        world.scene.materials[static_cast<size_t>(shape.material)].opaqueShadow)
+      return kNone;
+    const auto x = interact<N, K>(world.scene, world.geometry, ray, hit);
     left *=
         isCurve(shape) ? detail::throughCurve(*shape.strands, x.surface.transparent, ray.path) : x.surface.transparent;
     if (!(strength(left) > 0)) return kNone;

@@ -47,6 +47,7 @@ struct Material {
   std::shared_ptr<const Program> program;
   bool unlit = false;             // its emission stands for a colour that needs no light, and is none
   bool transparent = false;       // light may go straight through
+  bool opaqueShadow = false;      // but no shadow ray
   std::vector<Closure> closures;  // in place of diffuse, specular, alphas, rotation and normal; of these, then, nothing
 
   // Calls f(ColorInput&) or f(ScalarInput&) for each input; of a const material with const ones.

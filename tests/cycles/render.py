@@ -63,8 +63,8 @@ def make(entry: Scene) -> None:
         if world.cycles.sampling_method == "AUTOMATIC":
             world.cycles.sampling_method, world.cycles.sample_map_resolution = "MANUAL", 256
     for made in bpy.data.objects:  # Cycles moves the rays of shadows away from smooth surfaces
-        owner = compat.shadow_terminator_owner(made)
-        assign(owner, shadow_terminator_geometry_offset=0.0, shadow_terminator_offset=0.0)
+        for owner, name, value in compat.without_shadow_terminator(made):
+            setattr(owner, name, value)
 
 
 def render_scene(entry: Scene, folder: Path, first_seed: int) -> None:

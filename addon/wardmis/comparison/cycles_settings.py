@@ -75,9 +75,7 @@ def unbiased(scene: Any, bounces: Bounces) -> Iterator[Setting]:
     yield cycles, "transparent_max_bounces", bounces.transparent
     # Cycles moves the shadows' rays away from smooth surfaces
     for obj in scene.objects:
-        owner = compat.shadow_terminator_owner(obj)
-        yield owner, "shadow_terminator_geometry_offset", 0.0
-        yield owner, "shadow_terminator_offset", 0.0
+        yield from compat.without_shadow_terminator(obj)
 
 
 def lacks_denoiser(scene: Any) -> bool:

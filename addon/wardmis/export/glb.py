@@ -221,6 +221,8 @@ class _Encoder:
         extension: dict[str, Any] = {}
         if material.closures:
             extension["closures"] = [_closure(closure) for closure in material.closures]
+            if not material.transparent_shadow:
+                extension["transparentShadow"] = False
         else:
             extension["variant"] = material.variant
         for key, value in (

@@ -26,6 +26,7 @@ def export_material(material: Any, context: ExportContext) -> MaterialData:
     try:
         data = _surface_of(material, owner) if compat.uses_nodes(material) else _plain(material)
         data.index = material.pass_index
+        data.transparent_shadow = compat.transparent_shadow(material)
         wrong = not_finite(data)  # what the nodes make of finite numbers may still be none
         if wrong is not None:
             context.note(f"{owner.place}: its {wrong} is not a finite number; rendered as magenta")

@@ -144,6 +144,7 @@ class MaterialData:
     closures: list[ClosureData] = field(default_factory=list)
     program: ProgramData | None = None
     index: int = 0
+    transparent_shadow: bool = True
 
     @property
     def uv_sets(self) -> set[str]:

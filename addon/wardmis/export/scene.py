@@ -89,6 +89,11 @@ def _gather(
     context = ExportContext(WithinMemory(), cancelled, frame, tell)
     if film.transparent and getattr(getattr(scene, "cycles", None), "film_transparent_glass", False):
         context.note("the film's Transparent Glass is not supported: what is seen through glass stays opaque")
+    space = compat.working_space()
+    if space != compat.LINEAR:
+        context.note(
+            f"the file's working space, {space}, is not supported: colours of images and spectra are in {compat.LINEAR}"
+        )
     context.layer = (depsgraph.view_layer, depsgraph.scene, depsgraph.scene.world)
     motion = None
     if opening is not None and set_frame is not None:

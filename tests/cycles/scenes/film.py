@@ -2,7 +2,7 @@
 """Exposure, transparency and filters of the film."""
 
 import bpy
-from stage import add, ball, box, collection, diffuse, lamp, material, scene, stage
+from stage import add, ball, box, collection, diffuse, lamp, material, mesh, scene, square, stage
 
 
 def things():
@@ -97,3 +97,55 @@ def holdout_shader():
     bpy.data.objects["Box"].data.materials[0] = made
     bpy.data.objects["Ball"].data.materials[0], tree, output = material()
     tree.links.new(add(tree, "Holdout").outputs[0], output.inputs["Surface"])
+
+
+def seen_through(*before):
+    """Half-transparent sheets over a box, a hole and nothing: each of `before` makes a material's shader by its tree."""
+    made = things()
+    made.render.film_transparent = True
+    bpy.data.objects["Ball"].is_holdout = True
+    for i, shader in enumerate(before):
+        sheet, tree, output = material("Sheet")
+        tree.links.new(shader(tree), output.inputs["Surface"])
+        pane = mesh("Pane", *square(1.6), sheet)
+        pane.location, pane.rotation_euler = (-0.4 + 0.5 * i, -1.4 - 0.4 * i, 2.0 - 0.3 * i), (1.4, 0, 0.1)
+
+
+def mixed(tree, share, name, **inputs):
+    """Of a transparent surface and another."""
+    mix = add(tree, "MixShader", None)
+    mix.inputs[0].default_value = share
+    tree.links.new(add(tree, "BsdfTransparent", Color=(0.9, 0.8, 0.6, 1)).outputs[0], mix.inputs[1])
+    tree.links.new(add(tree, name, **inputs).outputs[0], mix.inputs[2])
+    return mix.outputs[0]
+
+
+@scene(bounces=3)
+def transparent_behind_a_sheet():
+    seen_through(lambda tree: mixed(tree, 0.4, "BsdfDiffuse", Color=(0.7, 0.3, 0.2, 1)))
+
+
+@scene(bounces=3)
+def transparent_behind_two_sheets():
+    seen_through(
+        lambda tree: mixed(tree, 0.4, "BsdfDiffuse", Color=(0.7, 0.3, 0.2, 1)),
+        lambda tree: add(tree, "BsdfPrincipled", Alpha=0.3).outputs[0],
+    )
+
+
+@scene(bounces=3)
+def transparent_behind_a_glow():
+    """Light beside what is transparent covers nothing."""
+
+    def glow(tree):
+        both = add(tree, "AddShader", None)
+        tree.links.new(add(tree, "BsdfTransparent").outputs[0], both.inputs[0])
+        tree.links.new(add(tree, "Emission", Color=(0.2, 0.5, 0.9, 1), Strength=0.5).outputs[0], both.inputs[1])
+        return both.outputs[0]
+
+    seen_through(glow)
+
+
+@scene(bounces=3)
+def transparent_behind_a_partial_hole():
+    seen_through(lambda tree: mixed(tree, 0.5, "Holdout"))

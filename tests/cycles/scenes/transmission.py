@@ -91,6 +91,17 @@ def transparent_0():
 
 
 @scene(bounces=8)
+def shadow_of_one_that_casts_it_whole():
+    """Under a sun, which no ray of a surface finds by chance."""
+    panes("Transparent", 2)
+    bpy.data.objects.remove(bpy.data.objects["Area"])
+    lamp("SUN", (1, -1, 5), 3, target=(0, 0, 0), angle=0.0)
+    made = bpy.data.materials["Transparent"]
+    owner = made if hasattr(made, "use_transparent_shadow") else made.cycles
+    owner.use_transparent_shadow = False
+
+
+@scene(bounces=8)
 def ball_not_by_what_is_refracted():
     panes("Refraction", 2)
     bpy.data.objects["Ball"].visible_transmission = False
