@@ -84,7 +84,7 @@ TEST(Environment, CellsAreDrawnAsOftenAsTheirDensitySays) {
     const double v = 1 - std::atan2(std::hypot(x, y), z) / kPi<double>;
     const int i = std::min(static_cast<int>(u * kWidth), kWidth - 1),
               j = std::min(static_cast<int>(v * kHeight), kHeight - 1);
-    return static_cast<size_t>(j * kWidth + i);
+    return static_cast<size_t>(j) * kWidth + static_cast<size_t>(i);
   };
   Stream random(9, 0);
   for (int k = 0; k < kDraws; ++k) {
@@ -92,7 +92,8 @@ TEST(Environment, CellsAreDrawnAsOftenAsTheirDensitySays) {
     const Environment::Place place = sky.sample({q.x, static_cast<float>(q.y)});
     const size_t cell = cellOf(place.direction);
     ++drawn[cell];
-    const double top = kPi<double> * (1 - double(cell / kWidth) / kHeight), bottom = top - kPi<double> / kHeight;
+    const size_t row = cell / kWidth;
+    const double top = kPi<double> * (1 - double(row) / kHeight), bottom = top - kPi<double> / kHeight;
     share[cell] = double(sky.look(place).pdf) * 2 * kPi<double> / kWidth * (std::cos(bottom) - std::cos(top));
   }
   double sum = 0;
