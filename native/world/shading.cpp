@@ -225,7 +225,11 @@ void fill(const Scene& scene, const ShadedPoint& p, const Program& program, Shad
   }
   if ((program.reads & kReadsObject) != 0) {
     c.toWorld = frame(p.placement.toWorld);
-    if (const ObjectData* data = p.placement.object) {
+    const ObjectData* data = p.placement.object;
+    if (!part.radii.empty() && part.generated.empty() && (data == nullptr || !data->hasGenerated))
+      c.generated = {vectors::inversePoint(c.toWorld, c.position.value), c.toWorld.inverseVector(c.position.dx),
+                     c.toWorld.inverseVector(c.position.dy)};  // on the curve or sphere itself
+    if (data != nullptr) {
       std::copy_n(data->color, 4, c.color);
       c.index = data->index;
       c.random = data->random;

@@ -190,6 +190,19 @@ def generated_of_curves():
 
 
 @scene
+def generated_of_thick_curves():
+    stage()
+    shape("THICK")
+    loops(0.15, painted(generated)).scale = 1, 1.2, 0.8
+
+
+@scene
+def generated_of_points():
+    points(painted(generated), radius=0.14)
+    bpy.context.scene.objects["Ball"].scale = 1, 1, 1
+
+
+@scene
 def point_info():
     points(told("PointInfo", Random=0.9, Radius=3), radius=0.14)
 

@@ -23,25 +23,23 @@ KNOWN = {
 UNSUPPORTED = {"pointiness", "random_per_island", "tangent", "tangent_sign"}
 OF_MESHES: set[str] = set()
 # of volumes, of particles and of what Cycles keeps to itself: 0 on a surface
-ELSEWHERE = set(
-    [
-        "density",
-        "color",
-        "flame",
-        "heat",
-        "temperature",
-        "velocity",
-        "velocity_x",
-        "velocity_y",
-        "velocity_z",
-        "particle",
-        "undeformed",
-        "ptex_face_id",
-        "ptex_uv",
-        "generated_transform",
-        "shadow_transparency",
-    ]
-)
+ELSEWHERE = {
+    "density",
+    "color",
+    "flame",
+    "heat",
+    "temperature",
+    "velocity",
+    "velocity_x",
+    "velocity_y",
+    "velocity_z",
+    "particle",
+    "undeformed",
+    "ptex_face_id",
+    "ptex_uv",
+    "generated_transform",
+    "shadow_transparency",
+}
 if compat.CYCLES < 5:
     ELSEWHERE |= {"motion_P", "motion_N"}
     OF_MESHES |= {"N", "Ng"}
