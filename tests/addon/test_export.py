@@ -450,6 +450,28 @@ class OutOfReach(SceneTest):
         self.points.update_tag()
         self.assertEqual(self.told(), [])
 
+    def test_coordinates_of_round_points(self):
+        made = self.add_quad()
+        tree = bpy.data.node_groups.new("Points", "GeometryNodeTree")
+        for way in ("INPUT", "OUTPUT"):
+            compat.add_group_socket(tree, "Geometry", "NodeSocketGeometry", way)
+        kinds = ("NodeGroupInput", "NodeGroupOutput", "GeometryNodeMeshToPoints", "GeometryNodeSetMaterial")
+        entry, end, points, paint = (tree.nodes.new(kind) for kind in kinds)
+        tree.links.new(entry.outputs[0], points.inputs["Mesh"])
+        tree.links.new(points.outputs[0], paint.inputs["Geometry"])
+        tree.links.new(paint.outputs[0], end.inputs[0])
+        made.modifiers.new("Nodes", "NODES").node_group = tree
+        painted = paint.inputs["Material"].default_value = bpy.data.materials.new("Painted")
+        painted.use_nodes = True
+        nodes = painted.node_tree
+        place = nodes.nodes.new("ShaderNodeTexCoord").outputs["Object"]
+        nodes.links.new(place, nodes.nodes["Principled BSDF"].inputs["Base Color"])
+        for scale, told in (((1, 1, 1), False), ((1, 2, 1), compat.SPHERES_STAY_ROUND)):
+            made.scale = scale
+            made.update_tag()
+            notes = [n for n in self.gather().notes if "coordinates of points are not supported" in n]
+            self.assertEqual(len(notes), int(told), scale)
+
     def test_what_cycles_makes_of_a_mesh(self):
         self.placed("Tint")
         node = next(n for n in self.shown.active_material.node_tree.nodes if n.type == "ATTRIBUTE")

@@ -245,6 +245,12 @@ class _Gatherer:
                 if np.abs(product - np.eye(3) * product[0, 0]).max() > SMALLEST_STRETCH * np.abs(product).max():
                     self.meshes[instance.mesh] = transformed(mesh, linear)
                     instance.matrix[:3, :3] = np.eye(3)
+                    programs = (self.materials[primitive.material].program for primitive in mesh.primitives)
+                    if any(p is not None and p.reads("object", "object-normal", "generated") for p in programs):
+                        self.context.note(
+                            f"object '{instance.name}': Object and Generated coordinates of points are not supported under a scale "
+                            "that is not even; they are those without its scale and rotation; apply these to the points"
+                        )
 
     def _matrix(self, instance: Any) -> np.ndarray:
         matrix = np.array(instance.matrix_world)  # a copy: the instance lives for one step of the iteration
