@@ -37,7 +37,7 @@ def _attribute(use: NodeUse, output: Any, p: Reader) -> Value:
     owners = {"layer:": use.owner.context.layer}
     if p.lamp is not None and compat.CYCLES >= 5:
         owners |= p.lamp.object.owners
-    prefix = ATTRIBUTE_PREFIX[use.node.attribute_type]
+    prefix = ATTRIBUTE_PREFIX.get(use.node.attribute_type, "")
     found = (0.0, 0.0, 0.0, 1.0)
     if prefix in owners:
         found = object_attribute(prefix + use.node.attribute_name, owners)
