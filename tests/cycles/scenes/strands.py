@@ -193,7 +193,7 @@ def generated_of_curves():
 def generated_of_thick_curves():
     stage()
     shape("THICK")
-    loops(0.08, painted(generated)).scale = 1, 1.2, 0.8
+    loops(0.05, painted(generated)).scale = 1, 1.2, 0.8
 
 
 @scene
