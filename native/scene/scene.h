@@ -169,7 +169,7 @@ struct Light {
   uint8_t visibility = kSeenByAll;
   bool shadow = true;
   bool onCatchers = true;  // shadow catchers have its light also where they are alone
-  int maxBounces = 1024;  // it lights surfaces that a path has reached by at most so many
+  int maxBounces = 1024;   // it lights surfaces that a path has reached by at most so many
   std::shared_ptr<const Program> program;
   int result = -1;  // index into Program::results: what `emitted` is multiplied by where the light is looked at
 };

@@ -110,11 +110,35 @@ class NodeUse:
                     return found(None)
                 socket = target = _same(ends[0].inputs, output)
                 groups, hands_on = (*groups, node), False
+            elif (chosen := NodeUse(node, groups, self.owner).handed_on(output)) is not None:
+                (socket, groups), hands_on = chosen, False
+                target = socket
             elif output.type == "SHADER" and kinds[-1] != "SHADER":  # no number can be made of a shader
                 return found(target)
             else:
                 return found(output, NodeUse(node, groups, self.owner))
         raise RecursionError
+
+    def handed_on(self, output: Any) -> tuple[Any, tuple[Any, ...]] | None:
+        """The input, and its groups, that a menu's switch or a bundle hands on to an output; both came with Blender 5."""
+        if self.node.bl_idname == "GeometryNodeMenuSwitch" and output.identifier == "Output":
+            chosen = self.chosen()
+            found = next((s for s in self.node.inputs[1:] if s.name == chosen), None)
+            return None if found is None else (found, self.groups)
+        if self.node.bl_idname == "NodeSeparateBundle":
+            bundle = self.source("Bundle").use
+            if (
+                bundle is not None
+                and bundle.node.bl_idname == "NodeCombineBundle"
+                and output.name in bundle.node.inputs
+            ):
+                return bundle.node.inputs[output.name], bundle.groups
+        return None
+
+    def chosen(self) -> str | None:
+        """The item of a menu, if it is the same everywhere."""
+        source = self.source("Menu")
+        return source.socket.default_value if source.use is None and source.socket is not None else None
 
     def _link_to(self, socket: Any) -> Any:
         """The link that feeds an input."""

@@ -410,3 +410,63 @@ def empty_tree():
     tree.nodes.clear()
     sheet(of, size=1)
     sheet(diffuse(), size=3).location.z = -1
+
+
+def switched(tree, kind):
+    """A menu's switch whose second item is chosen."""
+    node = tree.nodes.new("GeometryNodeMenuSwitch")
+    node.data_type = kind
+    node.inputs[0].default_value = "B"
+    return node
+
+
+@scene(since=(5, 0))
+def of_other_kinds_of_trees():
+    """Constants, menus, bundles and the time, which materials have had since then."""
+    bpy.context.scene.frame_set(3)
+
+    def constants(tree):
+        whole, on, vector = (tree.nodes.new(f"FunctionNodeInput{kind}") for kind in ("Int", "Bool", "Vector"))
+        whole.integer, on.boolean, vector.vector = 3, True, (0.2, 0.05, 0.1)
+        scaled = add(tree, "VectorMath", {"operation": "SCALE"}, Vector=vector.outputs[0], Scale=whole.outputs[0])
+        product = add(tree, "VectorMath", {"operation": "MULTIPLY"}, Vector=scaled.outputs[0])
+        tree.links.new(on.outputs[0], product.inputs[1])
+        return product.outputs[0]
+
+    def menu(tree):
+        node = switched(tree, "RGBA")
+        node.inputs["A"].default_value, node.inputs["B"].default_value = (0.8, 0.1, 0.1, 1), (0.1, 0.8, 0.1, 1)
+        return node.outputs[0]
+
+    def bundle(tree):
+        made, taken = tree.nodes.new("NodeCombineBundle"), tree.nodes.new("NodeSeparateBundle")
+        for node in (made, taken):
+            node.bundle_items.new("RGBA", "Paint")
+        made.inputs["Paint"].default_value = 0.8, 0.4, 0.1, 1
+        tree.links.new(made.outputs[0], taken.inputs[0])
+        return taken.outputs["Paint"]
+
+    def time(tree):
+        node = tree.nodes.new("GeometryNodeInputSceneTime")
+        return add(
+            tree, "CombineXYZ", X=math_of(tree, node, "Frame", 0.2), Y=math_of(tree, node, "Seconds", 4.0)
+        ).outputs[0]
+
+    def math_of(tree, node, name, factor):
+        product = add(tree, "Math", {"operation": "MULTIPLY"})
+        tree.links.new(node.outputs[name], product.inputs[0])
+        product.inputs[1].default_value = factor
+        return product.outputs[0]
+
+    row(constants, menu, bundle, time)
+
+
+@scene(since=(5, 0))
+def menus_of_shaders():
+    def chosen(tree):
+        node = switched(tree, "SHADER")
+        tree.links.new(add(tree, "BsdfDiffuse", Color=(0.8, 0.1, 0.1, 1)).outputs[0], node.inputs["A"])
+        tree.links.new(add(tree, "BsdfDiffuse", Color=(0.1, 0.8, 0.1, 1)).outputs[0], node.inputs["B"])
+        return node.outputs[0]
+
+    shaders(chosen)

@@ -32,6 +32,28 @@ def _own(use: NodeUse, output: Any, p: Reader) -> Value:
     return constant(own_value(use, output), kind_of_socket(output.type))
 
 
+def _of_node(name: str) -> Any:
+    """What a node holds as its own setting."""
+
+    def function(use: NodeUse, _output: Any, _p: Reader) -> Value:
+        value = getattr(use.node, name)
+        return float(value) if isinstance(value, bool | int) else tuple(value)  # type: ignore[return-value]
+
+    return function
+
+
+def _menu(use: NodeUse, output: Any, _p: Reader) -> Value | None:
+    """Whether an item is the chosen one; what that hands on is read elsewhere (tree.py)."""
+    chosen = use.chosen()
+    return None if chosen is None or output.identifier == "Output" else float(output.name == chosen)
+
+
+def _scene_time(use: NodeUse, output: Any, _p: Reader) -> Value:
+    scene = use.owner.context.layer[1]
+    frame = scene.frame_current + scene.frame_subframe
+    return frame if output.name == "Frame" else frame * scene.render.fps_base / scene.render.fps
+
+
 SHIFTED = {"position", "uv", "generated", "object", "camera", "window", "parametric"}
 
 
@@ -284,4 +306,12 @@ NODES = {
     "TexIES": _ies,
     "Bevel": _bevel,
     "AmbientOcclusion": _ambient_occlusion,
+}
+# of other kinds of trees, since Blender 5
+SHARED = {
+    "FunctionNodeInputBool": _of_node("boolean"),
+    "FunctionNodeInputInt": _of_node("integer"),
+    "FunctionNodeInputVector": _of_node("vector"),
+    "GeometryNodeMenuSwitch": _menu,
+    "GeometryNodeInputSceneTime": _scene_time,
 }

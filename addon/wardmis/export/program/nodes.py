@@ -16,4 +16,4 @@ NODES: dict[str, Callable[[NodeUse, Any, Reader], Value | None]] = {
     f"ShaderNode{name}": function
     for table in (inputs.NODES, colors.NODES, vectors.NODES, textures.NODES, patterns.NODES, sky.NODES)
     for name, function in table.items()
-}
+} | inputs.SHARED
