@@ -269,6 +269,11 @@ def transparent_shadow(material: Any) -> bool:
     return bool(getattr(material, "use_transparent_shadow", getattr(material.cycles, "use_transparent_shadow", True)))
 
 
+def light_is_met(light: Any) -> bool:
+    """Whether surfaces' rays find the light too; it is Cycles' Multiple Importance."""
+    return bool(getattr(getattr(light, "cycles", None), "use_multiple_importance_sampling", True))
+
+
 def light_has_soft_falloff(light: Any) -> bool:
     """Whether a point or spot light with a radius is a disk that faces the shading point (always, until the option came)."""
     return bool(getattr(light, "use_soft_falloff", True))

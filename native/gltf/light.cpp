@@ -27,6 +27,7 @@ std::optional<Light> readLight(const Json& json, const Affine& toWorld, Material
   light.maxBounces = static_cast<int>(json.integerOr("maxBounces", light.maxBounces, 0, 1 << 20));
   light.toWorld = toWorld;
   light.shadow = json.booleanOr("shadow", true);
+  light.met = json.booleanOr("met", true);
   light.onCatchers = json.booleanOr("onCatchers", true);
   const Rgb color = json.lightOr("color", {1, 1, 1});
   switch (light.type) {

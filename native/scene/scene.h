@@ -168,6 +168,7 @@ struct Light {
   bool cosine = false;
   uint8_t visibility = kSeenByAll;
   bool shadow = true;
+  bool met = true;         // by other rays than the camera's, else by light samples alone
   bool onCatchers = true;  // shadow catchers have its light also where they are alone
   int maxBounces = 1024;   // it lights surfaces that a path has reached by at most so many
   std::shared_ptr<const Program> program;

@@ -172,12 +172,14 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Env
       w *= meanFactor(l, geometry.radius());
     }
     const auto index = static_cast<uint32_t>(lamps_.size());
-    l.exclusive = l.kind == Kind::kDeltaPoint || l.kind == Kind::kDeltaSun || !l.shadow;
+    const bool seen = l.kind != Kind::kDeltaPoint && l.kind != Kind::kDeltaSun && l.shadow;
+    l.exclusive = !seen || !light.met;
     (l.exclusive ? exclusive_ : shared_) = true;
-    if (!l.exclusive && light.type == LightType::kSun)
-      infinite_.push_back(index);
-    else if (!l.exclusive)
+    if (light.type == LightType::kSun) {
+      if (!l.exclusive) infinite_.push_back(index);
+    } else if (seen) {
       finite_.push_back({index, l.center, l.kind == Kind::kArea ? l.plane.reach2() : l.radius * l.radius});
+    }
     lamps_.push_back(l);
     power.push_back(std::max(w, 0.0));
   }
@@ -444,7 +446,7 @@ bool Emitters::meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax,
   const Vec3f d = ray.direction;
   // where two lobes share a technique, both get what any of its rays meets: who sees it is the estimator's to say
   const int seers = ray.kind == kSeenByCamera ? kSeenByCamera : kSeenBySurfaces;
-  if ((lamp.visibility & seers) == 0) return false;
+  if ((lamp.visibility & seers) == 0 || (lamp.exclusive && ray.kind != kSeenByCamera)) return false;
   float pdf = 0, t = kFar;
   switch (lamp.kind) {
     case Kind::kArea:

@@ -531,6 +531,8 @@ def _light(light: LightData) -> dict[str, Any]:
         "shadow": light.shadow,
         "maxBounces": light.max_bounces,
     }
+    if not light.met:
+        result["met"] = False
     if not light.on_catchers:
         result["onCatchers"] = False
     if light.type == "area":

@@ -50,6 +50,7 @@ def export_light(
     data = LightData(name, light.type.lower(), matrix, color, 0.0, hidden_from=hidden_from)
     data.shadow = compat.light_casts_shadow(light)
     data.max_bounces = compat.max_bounces(light)
+    data.met = compat.light_is_met(light)
     if nodes:
         data.program, data.result = nodes.program, nodes.result
     {"AREA": _area, "POINT": _point, "SPOT": _spot, "SUN": _sun}[light.type](light, power, data, context)

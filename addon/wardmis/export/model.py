@@ -230,6 +230,7 @@ class LightData:
     blend: float = 0.0  # spot
     cosine: bool = False  # spot
     shadow: bool = True
+    met: bool = True
     on_catchers: bool = True
     max_bounces: int = 1024  # of paths whose surfaces it lights
     hidden_from: frozenset[str] = frozenset()

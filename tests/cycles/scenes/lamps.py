@@ -23,6 +23,7 @@ from stage import (
     image,
     instance,
     lamp,
+    material,
     mesh,
     place,
     scene,
@@ -533,3 +534,18 @@ def background_node():
 def ies_without_file():
     """Which counts as 100."""
     with_nodes(lambda tree: add(tree, "Emission", Strength=add(tree, "TexIES", Strength=0.02).outputs[0]).outputs[0])
+
+
+@scene(bounces=2)
+def not_met():
+    """Without multiple importance sampling: the camera sees it, a mirror does not."""
+    things()
+    made, tree, output = material()
+    shader = add(tree, "BsdfGlossy" if bpy.app.version < (4, 0) else "BsdfAnisotropic", Roughness=0.0)
+    tree.links.new(shader.outputs[0], output.inputs["Surface"])
+    ball(made, location=(0.2, -1.2, 0.6), radius=0.6)
+    for kind, at in (("AREA", (1, -1, 4)), ("POINT", (-1.5, -0.5, 2.8)), ("SUN", (0.3, -0.4, 5))):
+        light = lamp(kind, at, 2 if kind == "SUN" else 100, target=(0, 0, 0))
+        light.visible_camera = True
+        light.data.cycles.use_multiple_importance_sampling = False
+    bpy.context.scene.camera.data.lens = 22
