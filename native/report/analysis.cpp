@@ -132,8 +132,8 @@ class Reporter {
     for (const Measured& m : measured_) r["configurations"].push_back(configuration(m));
     if (json t = techniques(); !t.empty()) r["techniques"] = std::move(t);
     if (json m = models(); !m.empty()) r["models"] = std::move(m);
-    r["finding"] = finding(r);
     r["verdict"] = verdict(r);
+    r["finding"] = finding(r);
     a.pictures = gallery(e_, measured_, r["configurations"]);
     a.images = imageFiles(e_, measured_);
     r["images"] = json::array();

@@ -60,6 +60,13 @@ std::string withAllPixels(const json& r) {
   return fmt::format("With all pixels, {}.", text);
 }
 
+// Whether the verdict, which stands above the finding, has a figure of what does not surely reach the target.
+bool isComparedAtItsEnd(const json& r, const std::string& name) {
+  if (!r.contains("verdict")) return false;
+  const json ratio = r["verdict"]["ratios"].value(name, json());
+  return ratio.is_object() && ratio["of"] == "time to its end";
+}
+
 // What others estimate than the baseline is another task.
 std::vector<std::string> otherLight(const json& r) {
   json base;
@@ -90,7 +97,7 @@ std::vector<std::string> finding(const json& r) {
   const std::string base = r["baseline"];
   const std::string metric = r["metric"] == "relmse" ? "relMSE" : "relMSE without the largest 0.1 %";
   const char* key = r["metric"] == "relmse" ? "relmse" : "relmse_trimmed";
-  std::vector<std::string> slower, ties, unreached, under, biased, unclear, heavy;
+  std::vector<std::string> slower, ties, unreached, ended, under, biased, unclear, heavy;
   std::vector<std::pair<double, std::string>> faster;  // by ratio
   double secondLow = 1;                                // lower end of the intervals of all but the best
   json best, baseline;
@@ -110,7 +117,7 @@ std::vector<std::string> finding(const json& r) {
       continue;
     }
     if (t["ratio"].is_null()) {
-      if (t["verdict"] == "not reached") unreached.push_back(name);
+      if (t["verdict"] == "not reached") (isComparedAtItsEnd(r, name) ? ended : unreached).push_back(name);
       if (t["verdict"] == "under from the start") under.push_back(name);
       continue;
     }
@@ -162,6 +169,10 @@ std::vector<std::string> finding(const json& r) {
     if (!under.empty()) said.push_back(fmt::format("Under it from their first checkpoint on: {}.", listed(under)));
     if (!unreached.empty() && !baseUnreached)
       said.push_back(fmt::format("That error is not surely reached by {}.", listed(unreached)));
+    if (!ended.empty() && !baseUnreached)
+      said.push_back(
+          fmt::format("The curve of {} ends before that error: what stands above of it is at the error where it ends.",
+                      listed(ended)));
   } else {
     const json& curve = r["configurations"][0]["curve"];
     const json& last = curve.back();

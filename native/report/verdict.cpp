@@ -27,11 +27,13 @@ Side sideOf(const json& ratio) {
 }
 bool isWide(const json& ratio) { return ratio["high"].get<double>() >= kWide * ratio["low"].get<double>(); }
 
-// Never 100 of what is less.
+// Never 100 of what is less, nor 0 of what is more.
 std::string percent(double p) {
   int digits = p < 0.1 ? 1 : 0;
-  while (p < 1 && digits < 4 && fmt::format("{:.{}f}", 100 * p, digits).starts_with("100")) ++digits;
-  return fmt::format("{:.{}f}", 100 * p, digits);
+  const auto said = [&] { return fmt::format("{:.{}f}", 100 * p, digits); };
+  while (p < 1 && digits < 6 && (said().starts_with("100") || said().find_first_not_of("0.") == std::string::npos))
+    ++digits;
+  return said();
 }
 
 bool isExternal(const json& c) { return !c["estimates"].is_string(); }
@@ -63,19 +65,22 @@ std::string share(const json& ratio, const char* of) {
   return text;
 }
 
+constexpr const char* kAtItsEnd = "at the error where its curve ends";
+
 // Where the curve of another renderer ends before the target.
 bool isToItsEnd(const json& ratio) { return ratio["of"] == "time to its end"; }
 
-// Of a tie with another renderer at the target, or where its curve ends: whether it is one at equal time too, or, where
-// that is not known, by variance times seconds; and the sentence where it is not.
+// Of a tie with the baseline at the target, or where another renderer's curve ends: whether it is one at equal time
+// too, or, where another renderer has no such time, by variance times seconds; and the sentence where it is not.
 std::string otherColumn(const json& c, const json& base, const json& ratio) {
-  const bool timed = ratioIn(c, "equal_time").is_object();
+  const bool timed = !isExternal(c) || ratioIn(c, "equal_time").is_object();
   const Side side = sideOf(ratioIn(c, timed ? "equal_time" : "efficiency"));
   if (side != Side::kBetter && side != Side::kWorse) return "";
   const auto samples = [](const json& of) { return of["curve"].back()["spp"].get<int>(); };
-  std::string text = fmt::format(" {} is neither surely sooner nor later {}, and has {} ", c["name"].get<std::string>(),
-                                 isToItsEnd(ratio) ? "at the error where its curve ends" : "at the target",
-                                 side == Side::kBetter ? "less" : "more");
+  std::string text =
+      fmt::format(" {} is neither surely sooner nor later than {} {}, and has {} ", c["name"].get<std::string>(),
+                  base["name"].get<std::string>(), isToItsEnd(ratio) ? kAtItsEnd : "at the target",
+                  side == Side::kBetter ? "less" : "more");
   if (timed) return text + "error in the same time.";
   text += "variance times seconds";
   if (samples(c) != samples(base))
@@ -84,10 +89,14 @@ std::string otherColumn(const json& c, const json& base, const json& ratio) {
   return text + ".";
 }
 
-// "the noise of equal in half its time", or at equal time "half the error of equal in the same time"
-std::string gain(const json& ratio, const std::string& name) {
-  return ratio["of"] == "error" ? fmt::format("{} in the same time", share(ratio, ("the error of " + name).c_str()))
-                                : fmt::format("the noise of {} in {}", name, share(ratio, "its time"));
+// What is brought against `name`: "the noise of equal in half its time", or at equal time "half the error of equal in
+// the same time". Where that is no figure at the target, it says which curve's end it is of.
+std::string gain(const json& ratio, const std::string& name, const std::string& ended) {
+  if (ratio["of"] == "error") return fmt::format("{} in the same time", share(ratio, ("the error of " + name).c_str()));
+  const std::string time = share(ratio, "its time");
+  if (!isToItsEnd(ratio)) return fmt::format("the noise of {} in {}", name, time);
+  return name == ended ? fmt::format("the noise that {} ends with in {}", name, time)
+                       : fmt::format("the noise of {} in {}, where the curve of {} ends", name, time, ended);
 }
 
 json inverse(const json& ratio) {
@@ -106,18 +115,124 @@ bool isExact(const json& r) {
 }
 
 std::string noChoice(const json& r) {
+  const std::string base = r["baseline"];
   if (r["configurations"].size() < 2)
-    return fmt::format("{} is all that was measured: there is nothing to choose from.",
-                       r["baseline"].get<std::string>());
-  return isExact(r) ? "Every image equals the reference: there is nothing to choose."
-                    : "None can be recommended: each differs from the reference by more than noise.";
+    return fmt::format("{} is all that was measured: there is nothing to choose from.", base);
+  if (isExact(r)) return "Every image equals the reference: there is nothing to choose.";
+  const auto isOut = [](const json& c) { return isExternal(c) || isBiased(c); };
+  if (std::all_of(r["configurations"].begin(), r["configurations"].end(), isOut))
+    return "None of WardMIS can be recommended: each differs from the reference by more than noise.";
+  return isExternal(baselineOf(r))
+             ? fmt::format("None can be recommended: all are compared with {}, which is another renderer.", base)
+             : fmt::format(
+                   "None can be recommended: {}, which all are compared with, differs from the reference by "
+                   "more than noise.",
+                   base);
 }
 
-// "auto is a tie.", "auto and variance are ties."
-std::string sentence(const std::vector<std::string>& names, const char* one, const char* many) {
+// " auto is <one>.", " auto and variance are <many>.", or of more names than can be taken in " 5 others are <many>."
+std::string sentence(const std::vector<std::string>& names, const std::string& one, const std::string& many) {
   if (names.empty()) return "";
   if (names.size() > kFewNames) return fmt::format(" {} others {}.", names.size(), many);
   return fmt::format(" {} {}.", listed(names), names.size() == 1 ? one : many);
+}
+std::string sentence(const std::vector<std::string>& names, const std::string& both) {
+  return sentence(names, both, both);
+}
+
+// The other configurations, by what can be said of them beside the one to use: names, or (`ahead`, `gains`, `apart`)
+// whole phrases.
+struct Rivals {
+  std::vector<std::string> ahead, gains, apart;
+  std::vector<std::string> ties, tiesAtTheirEnd, open;  // no difference, by a narrow interval; by a wide one
+  // Worse than the one to use, and, where that is not the baseline, against the baseline: better, no difference, worse.
+  std::vector<std::string> second, amid, worse;
+  std::vector<std::string> biased, unknown;  // not compared
+};
+
+// By the column that recommended() goes by, else by the other one.
+Side againstBaseline(const json& c) {
+  const json& time = ratioIn(c, "time_to_target");
+  return sideOf(time.is_object() ? time : ratioIn(c, "equal_time"));
+}
+
+// Where the others stand beside the one to use alone: it is the baseline, or that is not fit for comparisons.
+bool standsAlone(const json& base, const std::string& use) { return use == base["name"] || isBiased(base); }
+
+Rivals rivalsOf(const json& r, const std::string& use, const json& ratios) {
+  const json& base = baselineOf(r);
+  const bool isAlone = standsAlone(base, use);
+  Rivals rivals;
+  for (const json& c : r["configurations"]) {
+    const std::string name = c["name"];
+    const bool external = isExternal(c);
+    if (name == use || (!external && c["estimates"] != base["estimates"])) continue;  // other light is no rival
+    const json& ratio = ratios[name];
+    const Side side = sideOf(ratio);
+    if (isBiased(c)) {
+      rivals.biased.push_back(name);
+    } else if (side == Side::kUnknown) {
+      rivals.unknown.push_back(name);
+    } else if (side == Side::kBetter && (external || name == base["name"])) {
+      rivals.gains.insert(external ? rivals.gains.end() : rivals.gains.begin(), gain(ratio, name, name));
+    } else if (side == Side::kBetter) {
+      const Side other = isAlone ? Side::kWorse : againstBaseline(c);
+      (other == Side::kBetter ? rivals.second : other == Side::kWorse ? rivals.worse : rivals.amid).push_back(name);
+    } else if (side == Side::kWorse && external) {
+      rivals.ahead.push_back(fmt::format("{} is better here: {}. ", name, gain(inverse(ratio), use, name)));
+    } else if (const std::string differs =
+                   use == base["name"] && ratio["of"] != "error" ? otherColumn(c, base, ratio) : "";
+               !differs.empty()) {
+      rivals.apart.push_back(differs);
+    } else {
+      (isWide(ratio) ? rivals.open : isToItsEnd(ratio) ? rivals.tiesAtTheirEnd : rivals.ties).push_back(name);
+    }
+  }
+  return rivals;
+}
+
+// What to use and what that brings. Where it brings nothing, that nothing is better, as far as it is known.
+std::string advice(const std::string& use, const Rivals& r) {
+  std::string text;
+  for (const std::string& each : r.ahead) text += each;
+  text += fmt::format("{} {}", r.ahead.empty() ? "Use" : "Of WardMIS, use", use);
+  if (!r.gains.empty()) return fmt::format("{}: {}.", text, listed(r.gains));
+  if (!r.ahead.empty() || !r.apart.empty()) return text + ".";
+  const bool undecided = !r.ties.empty() || !r.tiesAtTheirEnd.empty() || !r.open.empty();
+  if (!undecided && r.worse.empty()) return text + ": nothing here could be compared with it.";
+  return text + (undecided || !r.unknown.empty() ? ": nothing here is surely better." : ": nothing here is better.");
+}
+
+// Each of the others beside the one that is named in the sentence.
+std::string others(const std::string& use, const json& base, const Rivals& r) {
+  const std::string baseline = base["name"];
+  std::string text = sentence(r.ties, "is a tie with " + use, "are ties with " + use);
+  text += sentence(r.tiesAtTheirEnd, fmt::format("is a tie with {} {}", use, kAtItsEnd),
+                   fmt::format("are ties with {} at the errors where their curves end", use));
+  for (const std::string& each : r.apart) text += each;
+  const std::string than =
+      standsAlone(base, use) ? fmt::format("worse than {}", use) : fmt::format("worse than {} and {}", baseline, use);
+  text += sentence(r.second, fmt::format("is better than {} too, but worse than {}", baseline, use),
+                   fmt::format("are better than {} too, but worse than {}", baseline, use));
+  text += sentence(r.amid, fmt::format("is worse than {}, and not surely better than {}", use, baseline),
+                   fmt::format("are worse than {}, and not surely better than {}", use, baseline));
+  text += sentence(r.worse, "is " + than, "are " + than);
+  if (!r.open.empty())
+    text += fmt::format(" No difference from {} was found for {}.", use,
+                        r.open.size() > kFewNames ? fmt::format("{} others", r.open.size()) : listed(r.open));
+  const char* differs = "differ{} from the reference by more than noise, and {} not compared";
+  text +=
+      sentence(r.biased, fmt::format(fmt::runtime(differs), "s", "is"), fmt::format(fmt::runtime(differs), "", "are"));
+  return text + sentence(r.unknown, "cannot be compared with " + use);
+}
+
+std::string caveats(const json& r) {
+  std::string text;
+  if (r["metric"] != "relmse") text += " The rarest, brightest pixels are left out of this.";
+  const size_t seeds = r["seeds"].size();
+  if (seeds < kFewSeeds) text += fmt::format(" With {} seeds this is a hint.", seeds);
+  if (r["complete"] == false) text += " It was stopped early.";
+  return text;
 }
 
 }  // namespace
@@ -139,62 +254,8 @@ std::string recommended(const json& r) {
 
 std::string verdictText(const json& r, const std::string& use, const json& ratios) {
   if (use.empty()) return noChoice(r);
-  const json& base = baselineOf(r);
-  std::vector<std::string> brings, ties, slower, unsure, ahead, even, evenToEnd, open;
-  std::string apart;  // of what is a tie at the target, and none in the other column
-  for (const json& c : r["configurations"]) {
-    const std::string name = c["name"];
-    if (name == use) continue;
-    const json& ratio = ratios[name];
-    const Side side = sideOf(ratio);
-    if (isExternal(c)) {
-      if (side == Side::kBetter) brings.push_back(gain(ratio, name));
-      if (side == Side::kWorse) ahead.push_back(fmt::format("{} is better here: {}.", name, gain(inverse(ratio), use)));
-      if (side == Side::kUnknown) unsure.push_back(name);
-      if (side != Side::kTie) continue;
-      const std::string differs = use == base["name"] && ratio["of"] != "error" ? otherColumn(c, base, ratio) : "";
-      apart += differs;
-      if (differs.empty()) (isWide(ratio) ? open : isToItsEnd(ratio) ? evenToEnd : even).push_back(name);
-    } else if (c["estimates"] != base["estimates"]) {
-      continue;  // no rival
-    } else if (isBiased(c) || side == Side::kUnknown) {
-      unsure.push_back(name);
-    } else if (side == Side::kBetter && name == base["name"]) {
-      brings.insert(brings.begin(), gain(ratio, name));
-    } else if (side == Side::kBetter) {
-      slower.push_back(name);
-    } else if (const Side error =
-                   use == base["name"] && ratio["of"] == "time" ? sideOf(ratioIn(c, "equal_time")) : Side::kTie;
-               error == Side::kBetter || error == Side::kWorse) {
-      apart += fmt::format(" {} is no sooner at the target, and has {} error in the same time.", name,
-                           error == Side::kBetter ? "less" : "more");
-    } else {
-      (isWide(ratio) ? open : ties).push_back(name);
-    }
-  }
-  const bool undecided = !ties.empty() || !open.empty() || !apart.empty() || !unsure.empty();
-  std::string text;
-  for (const std::string& each : ahead) text += each + " ";
-  text += fmt::format("{} {}", ahead.empty() ? "Use" : "Of WardMIS, use", use);
-  if (!brings.empty())
-    text += ": " + listed(brings);
-  else if (ahead.empty() && even.empty() && evenToEnd.empty() &&
-           (undecided ? ties.size() + open.size() + slower.size() > 0 : !slower.empty()))
-    text += undecided ? ": nothing here is surely better" : ": nothing here is better";
-  text += ".";
-  if (!even.empty()) text += fmt::format(" Against {}, it is a tie.", listed(even));
-  if (!evenToEnd.empty())
-    text += fmt::format(" Against {}, it is a tie at the error where its curve ends.", listed(evenToEnd));
-  text += sentence(ties, "is a tie", "are ties") + apart + sentence(slower, "is worse", "are worse");
-  if (!open.empty())
-    text += open.size() > kFewNames ? fmt::format(" To {} others no difference was found.", open.size())
-                                    : fmt::format(" No difference to {} was found.", listed(open));
-  text += sentence(unsure, "cannot be compared with it", "cannot be compared with it");
-  if (r["metric"] != "relmse") text += " The rarest, brightest pixels are left out of this.";
-  const size_t seeds = r["seeds"].size();
-  if (seeds < kFewSeeds) text += fmt::format(" With {} seeds this is a hint.", seeds);
-  if (r["complete"] == false) text += " It was stopped early.";
-  return text;
+  const Rivals rivals = rivalsOf(r, use, ratios);
+  return advice(use, rivals) + others(use, baselineOf(r), rivals) + caveats(r);
 }
 
 std::vector<std::string> contradictions(const json& r) {

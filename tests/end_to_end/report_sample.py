@@ -232,7 +232,7 @@ def full():
     report = {
         "schema": "wardmis-report-1", "title": "veach", "version": "0.1.0", "created": "2026-11-25T14:00:00Z", "complete": True,
         "verdict": {
-            "use": "auto", "text": "Use auto: the noise of equal in 57 % of its time. second-moment is a tie. variance is worse.",
+            "use": "auto", "text": "Use auto: the noise of equal in 57 % of its time. second-moment is a tie with auto. variance is worse than equal and auto.",
             "ratios": {}, "why": ["variance has less error than equal at equal samples, and is slower by the clock: its render of as many samples takes 1.4 times as long."],
         },
         "finding": [
@@ -282,7 +282,7 @@ def minimal():
         "baseline": "equal",
         "complete": False,
         "seeds": [1, 2],
-        "verdict": {"use": "equal", "text": "Use equal: x<y>&z is a tie.", "ratios": {}, "why": []},
+        "verdict": {"use": "equal", "text": "Use equal: x<y>&z is a tie with equal.", "ratios": {}, "why": []},
         "finding": ["equal and x<y>&z are a tie."],
         "images": [],
     }

@@ -19,7 +19,7 @@ VERDICT_ICONS = {
     "faster": "CHECKMARK",
     "slower": "X",
     "no difference found": "REMOVE",
-    "target not reached": "QUESTION",
+    "target not surely reached": "QUESTION",
     "under the target from the start": "SORTTIME",
     "the baseline has no time": "CANCEL",
 }

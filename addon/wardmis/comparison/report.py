@@ -15,7 +15,7 @@ VERDICTS = {
     "faster": "faster",
     "slower": "slower",
     "tie": "no difference found",
-    "not reached": "target not reached",
+    "not reached": "target not surely reached",
     "under from the start": "under the target from the start",
     "not compared": "the baseline has no time",
 }

@@ -25,6 +25,41 @@ TEST(MapRemark, explainsAMapThatSeemsToContradictTheFinding) {
   EXPECT_NE(later.find("later than equal, although it is better on more of the map"), later.npos) << later;
 }
 
+// `ratio` is what the verdict above has of Cycles, which does not surely reach the target.
+std::string findingOf(const json& ratio) {
+  const auto configuration = [](const char* name, const char* verdict) -> json {
+    return {{"name", name},
+            {"estimates", "paths"},
+            {"bias", nullptr},
+            {"tail", {{"heavy", false}}},
+            {"curve", {{{"relmse", {{"mean", .01}}}}}},
+            {"equal_samples", nullptr},
+            {"time_to_target", {{"target", .02}, {"ratio", nullptr}, {"verdict", verdict}}}};
+  };
+  const json seeds(16, 1);
+  const json r{{"baseline", "equal"},
+               {"metric", "relmse"},
+               {"clock", "wall"},
+               {"title", "x"},
+               {"seeds", seeds},
+               {"complete", true},
+               {"wall_scattered", false},
+               {"reference", {{"floor", {{"relmse", 1e-6}}}}},
+               {"verdict", {{"ratios", {{"Cycles", ratio}}}}},
+               {"configurations", {configuration("equal", "baseline"), configuration("Cycles", "not reached")}}};
+  std::string text;
+  for (const std::string& sentence : finding(r)) text += sentence + " ";
+  return text;
+}
+
+TEST(Finding, saysWhereAFigureOfWhatDoesNotReachTheTargetIsFrom) {
+  EXPECT_NE(
+      findingOf({{"of", "time to its end"}, {"mean", .58}})
+          .find("The curve of Cycles ends before that error: what stands above of it is at the error where it ends."),
+      std::string::npos);
+  EXPECT_NE(findingOf(nullptr).find("That error is not surely reached by Cycles."), std::string::npos);
+}
+
 TEST(MapRemark, isSilentWhereBothAgreeOrNothingIsKnown) {
   EXPECT_EQ(remark(0.5, 0.25, "faster"), "");
   EXPECT_EQ(remark(0.25, 0.5, "slower"), "");
