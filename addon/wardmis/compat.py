@@ -352,6 +352,8 @@ MAGIC = 4 if VERSION < (5, 2, 0) else 5
 BRICK = 3 if VERSION < (3, 5, 0) else 5
 RAMP_STEPS = 255 if VERSION < (4, 0, 0) else 256  # of the tables that Cycles makes of colour ramps and curves
 
+# What tells a number of an attribute makes three of it and takes their mean, which may have another last bit.
+NUMBERS_ARE_MEANS = VERSION >= (5, 2, 0)
 # Cycles is given trees without groups, reroutes and muted nodes, which convert nothing any more.
 NODE_TREES_ARE_INLINED = VERSION >= (5, 0, 0)
 # A Mix of numbers or vectors whose factor is 0 or 1 is none to Cycles, as one of colours always was.

@@ -8,7 +8,12 @@ import numpy as np
 
 def random_numbers(count: int) -> np.ndarray:
     """Of the numbers 0 to count - 1, (count,) float32 from 0 to 1."""
-    return (hash_of(np.arange(count, dtype=np.uint32)) / 0xFFFFFFFF).astype(np.float32)
+    return unit(hash_of(np.arange(count, dtype=np.uint32)))
+
+
+def unit(words: np.ndarray) -> np.ndarray:
+    """Words of 32 bits as float32 from 0 to 1, to the last bit as Cycles makes them of words: white noise shows each bit."""
+    return words.astype(np.float32) * (np.float32(1) / np.float32(0xFFFFFFFF))
 
 
 def hash_of(x: np.ndarray) -> np.ndarray:
@@ -36,4 +41,4 @@ def random_of(instance: int | None, name: str) -> float:
         for byte in name.encode():
             number = (number * 37 + byte) & 0xFFFFFFFF
         instance = int(hash_of(np.array([number], np.uint32))[0])
-    return (instance & 0xFFFFFFFF) / 0xFFFFFFFF
+    return float(unit(np.array([instance & 0xFFFFFFFF], np.uint32))[0])

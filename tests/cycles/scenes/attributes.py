@@ -2,7 +2,22 @@
 """What Attribute nodes read: of every domain and type, and by names that are not the user's."""
 
 import numpy as np
-from stage import add, ball, box, diffuse, feed, painted, scene, sheet, stage
+from stage import (
+    FACTOR,
+    add,
+    ball,
+    box,
+    diffuse,
+    face_on,
+    feed,
+    mesh,
+    painted,
+    place,
+    scene,
+    sheet,
+    square,
+    stage,
+)
 
 from scenes.instances import geometry_nodes, particles
 
@@ -56,6 +71,30 @@ def vertex_groups_of_instances():
         return points.outputs[0]
 
     geometry_nodes(box(location=(0, 0, 1), scale=(1.2, 1, 0.5)), build)
+
+
+def by_noise(kind, name):
+    """White noise of a number: the one before or after it has another colour."""
+
+    def build(tree):
+        number = add(tree, "Attribute", {"attribute_type": kind, "attribute_name": name}).outputs[FACTOR]
+        return add(tree, "TexWhiteNoise", {"noise_dimensions": "1D"}, W=number).outputs["Color"]
+
+    return painted(build)
+
+
+@scene
+def numbers_to_the_last_bit():
+    """Those of faces, and of objects."""
+    face_on()
+    made = sheet(by_noise("GEOMETRY", "Number"), 16)
+    made.scale, made.location = (0.4, 0.6, 1), (-1, 0, 0)
+    give(made, "Number", "FLOAT", "FACE")
+    of, random = by_noise("OBJECT", "number"), np.random.default_rng(6)
+    data = mesh("Tile", *square(0.09), of).data
+    for x in range(10):
+        for y in range(15):
+            place("Tile", data, (0.1 + 0.2 * x, 0.2 * y - 1.4, 0))["number"] = random.random()
 
 
 def of_edges(kind, **settings):

@@ -9,6 +9,7 @@ from stage import (
     box,
     collection,
     diffuse,
+    face_on,
     feed,
     gradient,
     instance,
@@ -93,6 +94,38 @@ def of_faces():
 def hidden_instancer():
     parent = box_of_balls()
     parent.instance_type, parent.show_instancer_for_render = "VERTS", False
+
+
+def random_color(tree):
+    """Of Object Info's Random, seen to its last bit: numbers that follow each other have nothing to do with each other."""
+    return add(tree, "TexWhiteNoise", {"noise_dimensions": "1D"}, W=add(tree, "ObjectInfo").outputs["Random"]).outputs[
+        "Color"
+    ]
+
+
+ROWS, COLUMNS = 15, 20
+
+
+def tiles():
+    """Where they lie, so that they fill the image."""
+    return [((x + 0.5) / COLUMNS * 4 - 2, (y + 0.5) / ROWS * 3 - 1.5, 0) for y in range(ROWS) for x in range(COLUMNS)]
+
+
+@scene
+def random_of_instances():
+    face_on()
+    corners = np.array(square(0.099)[0])
+    parent = mesh("Parent", (np.array(tiles())[:, None] + corners).reshape(-1, 3), np.arange(1200).reshape(-1, 4))
+    child = mesh("Child", *square(0.095), painted(random_color))
+    child.parent, parent.instance_type, parent.show_instancer_for_render = parent, "FACES", False
+
+
+@scene
+def random_of_names():
+    face_on()
+    data = mesh("Tile", *square(0.095), painted(random_color)).data
+    for index, location in enumerate(tiles()):
+        place(f"{('Tile', 'Größe', 'Пол', '床')[index % 4]} {index}", data, location)
 
 
 def particles(made, **settings):

@@ -129,11 +129,29 @@ def told(kind, **scales):
     return painted(build)
 
 
+def told_by_noise(kind):
+    """White noise of an info node's Random: to the number before or after it another colour belongs."""
+
+    def build(tree):
+        number = add(tree, kind).outputs["Random"]
+        return add(tree, "TexWhiteNoise", {"noise_dimensions": "1D"}, W=number).outputs["Color"]
+
+    return painted(build)
+
+
 @scene
 def curves_info():
     sunny()
     shape("THICK")
     loops(0.03, told("HairInfo", Intercept=0.8, Length=0.1, Random=0.8))
+
+
+@scene
+def curves_random():
+    """To its last bit."""
+    sunny()
+    shape("THICK")
+    loops(0.03, told_by_noise("HairInfo"))
 
 
 @scene
@@ -205,6 +223,11 @@ def generated_of_points():
 @scene
 def point_info():
     points(told("PointInfo", Random=0.9, Radius=3), radius=0.14)
+
+
+@scene
+def point_random():
+    points(told_by_noise("PointInfo"), radius=0.14)
 
 
 @scene

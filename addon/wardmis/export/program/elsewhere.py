@@ -6,13 +6,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 from mathutils import Matrix
 
 from ... import compat
 from ..attribute import object_attribute
 from ..tree import NodeUse
 from .builder import Value, is_zero
-from .inputs import ATTRIBUTE_PREFIX
+from .inputs import ATTRIBUTE_PREFIX, THIRD
 from .reader import NOWHERE, Reader
 
 Answer = Value | Callable[[NodeUse, Reader], Value | None]
@@ -44,7 +45,13 @@ def _attribute(use: NodeUse, output: Any, p: Reader) -> Value:
     r, g, b, alpha = found
     if output.name == "Alpha":
         return alpha
-    return (r + g + b) / 3 if output.type == "VALUE" else (r, g, b)
+    return _mean(r, g, b) if output.type == "VALUE" else (r, g, b)
+
+
+def _mean(r: float, g: float, b: float) -> float:
+    """To the last bit."""
+    mean = (np.float32(r) + np.float32(g) + np.float32(b)) * np.float32(THIRD)
+    return float(mean * np.float32(3) * np.float32(THIRD) if compat.NUMBERS_ARE_MEANS else mean)
 
 
 def _tangent_of_geometry(use: NodeUse, p: Reader) -> Value:

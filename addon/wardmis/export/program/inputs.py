@@ -7,6 +7,7 @@ import math
 from typing import Any
 
 import bpy
+import numpy as np
 
 from ... import compat
 from ..attribute import (
@@ -108,6 +109,7 @@ def _tangent(use: NodeUse, _output: Any, p: Reader) -> Value:
     return p("tangent", axis=use.node.axis.lower())
 
 
+THIRD = float(np.float32(1 / 3))  # by which Cycles takes a mean of three
 # where attributes of other things than geometry are kept, on the node of the object
 ATTRIBUTE_PREFIX = {"OBJECT": "object:", "INSTANCER": "instancer:", "VIEW_LAYER": "layer:"}
 
@@ -130,7 +132,13 @@ def _vertex_color(use: NodeUse, output: Any, p: Reader) -> Value:
 def _attribute_output(name: str, output: Any, p: Reader) -> Value:
     if output.name == "Alpha":
         return p.place("attribute-alpha", name=name)
-    return p.place("attribute-number" if output.type == "VALUE" else "attribute", name=name)
+    return attribute_number(p, name) if output.type == "VALUE" else p.place("attribute", name=name)
+
+
+def attribute_number(p: Reader, name: str) -> Value:
+    """To the last bit, which white noise shows."""
+    number = p.place("attribute-number", name=name)
+    return p.multiply(p.multiply(number, 3.0), THIRD) if compat.NUMBERS_ARE_MEANS else number
 
 
 def _geometry(use: NodeUse, output: Any, p: Reader) -> Value | None:
@@ -208,12 +216,14 @@ CURVES = {"Is Strand": STRAND, "Intercept": INTERCEPT, "Length": LENGTH, "Thickn
 def _curves_info(_use: NodeUse, output: Any, p: Reader) -> Value | None:
     """0 where there is no curve."""
     name = CURVES.get(output.name)
-    return None if name is None else p.place("attribute-number", name=name)
+    if name in {STRAND, DIAMETER}:  # no attributes to Cycles
+        return p.place("attribute-number", name=name)
+    return None if name is None else attribute_number(p, name)
 
 
 def _point_info(_use: NodeUse, output: Any, p: Reader) -> Value | None:
     if output.name == "Random":
-        return p.place("attribute-number", name=POINT_RANDOM)
+        return attribute_number(p, POINT_RANDOM)
     if output.name == "Position":
         return _of_object(p, p.place("attribute", name=CENTER), "point")
     if output.name != "Radius":
