@@ -13,6 +13,7 @@ namespace wardmis {
 namespace {
 
 constexpr const char* kExtension = "WARDMIS_scene";
+constexpr int kMostHalvings = 20;        // an image is a single texel before
 constexpr uint64_t kMostSets = 1 << 16;  // of texture coordinates
 
 constexpr std::pair<std::string_view, WardVariant> kVariants[] = {
@@ -383,6 +384,8 @@ int Materials::image(size_t i, bool isColor) {
     if (const auto given = extension->find("colorSpace")) encoding.space = given->choice(kColorSpaces);
     encoding.filterEncoded = extension->booleanOr("filterEncoded", false);
     if (const auto given = extension->find("alpha")) encoding.alpha = given->choice(kAlphas);
+    encoding.halvings = static_cast<int>(extension->integerOr("halvings", 0, 0, kMostHalvings));
+    encoding.limit = static_cast<int>(extension->integerOr("limit", 0, 0, kLargestImageSide));
   }
   const auto [entry, isNew] = imageOf_.try_emplace({i, encoding}, static_cast<int>(pending_.size()));
   if (isNew) pending_.push_back({json, encoding, user_});

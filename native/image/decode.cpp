@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "image/file.h"
+#include "image/shrink.h"
 #include "image/texture.h"
 #include "math/error.h"
 
@@ -49,6 +50,7 @@ DecodedImage finished(Image image, Encoding encoding) {
   if (srgb && !im.filterEncoded)
     for (size_t i = 0; i < im.floats.size(); i++)
       if (!isAlpha(im, static_cast<int>(i % im.channels))) im.floats[i] = srgbToLinear(im.floats[i]);
+  shrink(im, encoding.halvings, encoding.limit);
   return out;
 }
 

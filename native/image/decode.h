@@ -26,6 +26,7 @@ struct Encoding {
   ColorSpace space = ColorSpace::kAuto;
   bool filterEncoded = false;  // Image::filterEncoded
   Alpha alpha = Alpha::kKept;
+  int halvings = 0, limit = 0;  // shrink()
   // clang-tidy 14 takes what the compiler makes of <=> for a 0 that should be nullptr
   auto operator<=>(const Encoding&) const = default;  // NOLINT(modernize-use-nullptr)
 };

@@ -179,6 +179,7 @@ class _Encoder:
             extension["filterEncoded"] = True
         if image.alpha != "kept":
             extension["alpha"] = image.alpha
+        extension |= {name: value for name in ("halvings", "limit") if (value := getattr(image, name))}
         if image.encoded is not None:
             return {
                 "name": image.name,

@@ -15,6 +15,7 @@ from .. import compat
 from .blender_pixels import alpha_affects_colors, as_in_the_file, blender_pixels, is_cut_off
 from .file_alpha import file_alpha
 from .model import FileOnDisk, ImageData, Rgb
+from .simplify import FULL_SIZE, Shrinking
 
 # what stands in for an image that cannot be shown: never black, easy to see, and Blender's own sign for it
 MISSING: Rgb = (1.0, 0.0, 1.0)
@@ -280,14 +281,15 @@ class WithinMemory:
     """export_image() for a whole scene. Asking Blender about an image makes it read all pixels, which it keeps: beyond `limit` bytes
     those of files that it had not read before are given back, the oldest first."""
 
-    def __init__(self, limit: int = 1_000_000_000) -> None:
-        self._limit = limit
+    def __init__(self, shrinking: Shrinking = FULL_SIZE, limit: int = 1_000_000_000) -> None:
+        self._shrinking, self._limit = shrinking, limit
         self._read_before = {image.name_full for image in bpy.data.images if image.has_data}
         self._read: dict[str, tuple[Any, int]] = {}
 
     def __call__(self, image: Picture | Pixels) -> ImageData:
         data = export_image(image)
         if isinstance(image, Picture):
+            data.halvings, data.limit = self._shrinking.halvings, self._shrinking.limit
             self._bound(image.image)
         return data
 

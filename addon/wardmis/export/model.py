@@ -52,6 +52,8 @@ class ImageData:
     pixels: np.ndarray | None = None  # (height, width, channels 1..4), uint8 or float32, rows from the bottom
     filter_encoded: bool = False  # sRGB values are filtered as they are, and decoded after that
     alpha: str = "kept"  # or "multiplies" the colours as they are, or "ignored": 1
+    halvings: int = 0  # of both sides
+    limit: int = 0  # both are halved further until none is longer; 0: no limit
 
 
 @dataclass

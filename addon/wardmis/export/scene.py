@@ -23,6 +23,7 @@ from .mesh import Geometry, Wanted, assemble, gather_geometry, has_bent_normals,
 from .model import VISIBILITY, ClosureData, ColorInput, InstanceData, MaterialData, ScalarInput, SceneData
 from .motion import Motion, Opening, SetFrame, at_its_own_frame_again, go_to, opening_of, shutter_of
 from .program.lamp import LampObject
+from .simplify import not_simplified, shrinking_of
 from .strands import curve_settings, gather_curves, gather_hair, gather_points, particle_hair
 from .world import export_worlds
 
@@ -86,7 +87,9 @@ def _gather(
     camera = camera or scene.camera
     film = export_film(scene)
     film.keep_uvs = depsgraph.view_layer.use_pass_uv
-    context = ExportContext(WithinMemory(), cancelled, frame, tell)
+    context = ExportContext(WithinMemory(shrinking_of(depsgraph.scene)), cancelled, frame, tell)
+    for deviation in not_simplified(depsgraph):
+        context.note(deviation)
     if film.transparent and getattr(getattr(scene, "cycles", None), "film_transparent_glass", False):
         context.note("the film's Transparent Glass is not supported: what is seen through glass stays opaque")
     space = compat.working_space()

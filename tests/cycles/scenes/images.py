@@ -804,3 +804,48 @@ def generated_premultiplied():
     picture.pixels.foreach_set(with_alpha().astype("f").ravel())
     picture.alpha_mode = "PREMUL"
     shows(picture)
+
+
+def speckled(width, height):
+    """Black and white texels, of which the fewer are white the further to the right they are: their means depend on the space."""
+    shares = np.linspace(0.9, 0.1, width)
+    return np.repeat((np.random.default_rng(3).random((height, width)) < shares)[..., None], 3, axis=-1) * 1.0
+
+
+def simplified(picture, resolution=1.0, limit="128"):
+    simplify, cycles = bpy.context.scene.render, bpy.context.scene.cycles
+    simplify.use_simplify, cycles.texture_limit_render = True, limit
+    if resolution != 1:
+        cycles.texture_resolution_render = resolution
+    shows(picture)
+
+
+@scene
+def size_limited():
+    """To 75 by 65 texels; three columns are lost."""
+    simplified(saved_image("speckled", speckled(303, 260)))
+
+
+@scene
+def size_limited_of_floats():
+    """Where they are more than half."""
+    simplified(None)
+    picture = image("Speckled", speckled(303, 260), floats=True)
+    more = painted(
+        lambda tree: add(tree, "Math", {"operation": "GREATER_THAN"}, Value=texture(tree, picture).outputs[0]).outputs[
+            0
+        ]
+    )
+    bpy.context.scene.objects["Sheet"].data.materials[0] = more
+
+
+@scene
+def size_limited_with_alpha():
+    pixels = np.concatenate([speckled(303, 260), speckled(303, 260)[::-1, :, :1]], axis=-1)
+    simplified(saved_image("speckled-alpha", pixels))
+
+
+@scene(since=(5, 2))
+def size_by_resolution():
+    """A third of it is a quarter."""
+    simplified(saved_image("speckled", speckled(303, 260)), 0.3, "OFF")

@@ -6,6 +6,7 @@ import numpy as np
 from stage import (
     add,
     ball,
+    box,
     camera,
     collection,
     diffuse,
@@ -190,6 +191,19 @@ def generated_of_children():
     )
     made = next(o for o in bpy.context.scene.objects if o.particle_systems)
     made.modifiers.new("Bend", "SIMPLE_DEFORM").angle = 0.5
+
+
+@scene
+def simplified():
+    """A third of the children, and one subdivision of three."""
+    furry_ball(diffuse((0.6, 0.4, 0.2)), child_type="INTERPOLATED", rendered_child_count=6)
+    box(location=(-1.8, 0, 0.6), scale=(0.5, 0.5, 0.5)).modifiers.new("Round", "SUBSURF").render_levels = 3
+    simplify = bpy.context.scene.render
+    simplify.use_simplify, simplify.simplify_subdivision_render, simplify.simplify_child_particles_render = (
+        True,
+        1,
+        0.33,
+    )
 
 
 @scene

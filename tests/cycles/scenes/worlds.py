@@ -98,6 +98,15 @@ def image_seen():
 
 
 @scene
+def image_of_limited_size():
+    """Of 300 by 150 texels, 75 by 37 are left."""
+    image_sky(300)
+    bpy.context.scene.render.use_simplify, bpy.context.scene.cycles.texture_limit_render = True, "128"
+    bpy.context.scene.camera.rotation_euler = 1.75, 0, 0.05
+    bpy.context.scene.camera.data.lens = 20
+
+
+@scene
 def muted_background():
     things()
     tree = sky((0.9, 0.5, 0.2))
