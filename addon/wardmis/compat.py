@@ -456,11 +456,13 @@ def cycles_samples(cycles: Any, first: int, count: int) -> list[tuple[Any, str, 
     ]
 
 
-def without_shadow_terminator(obj: Any) -> list[tuple[Any, str, float]]:
-    """Settings by which Cycles moves no rays of shadows away from smooth surfaces; they were its own until 4.2."""
-    owner = obj if hasattr(obj, "shadow_terminator_geometry_offset") else getattr(obj, "cycles", None)
-    names = [p.identifier for p in owner.bl_rna.properties] if owner is not None else []
-    return [(owner, name, 0.0) for name in names if name.startswith("shadow_terminator_")]
+def shadow_terminator(obj: Any) -> tuple[Any, str, str]:
+    """Who has the settings of the edge of a smooth surface's own shadow, and their names: how far light samples are moved, and by
+    how much the light's angle is greater. They were Cycles' own until 4.2."""
+    geometry = "shadow_terminator_geometry_offset"
+    if hasattr(obj, geometry):
+        return obj, geometry, "shadow_terminator_shading_offset"
+    return getattr(obj, "cycles", None), geometry, "shadow_terminator_offset"
 
 
 def working_space() -> str:

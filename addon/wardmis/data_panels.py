@@ -13,6 +13,23 @@ from .panels import Panel
 SURFACES = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD"}
 
 
+class WARDMIS_OBJECT_PT_shadow_terminator(Panel, bpy.types.Panel):
+    bl_label = "Shadow Terminator"
+    bl_context = "object"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        return context.object is not None and context.object.type in SURFACES and super().poll(context)
+
+    def draw(self, context: Any) -> None:
+        owner, *offsets = compat.shadow_terminator(context.object)
+        column = self._column()
+        for name, text in zip(offsets, ("Geometry Offset", "Shading Offset")):
+            if hasattr(owner, name):
+                column.prop(owner, name, text=text)
+
+
 class WARDMIS_OBJECT_PT_visibility(Panel, bpy.types.Panel):
     bl_label = "Visibility"
     bl_context = "object"
@@ -170,6 +187,7 @@ class WARDMIS_LIGHT_PT_nodes(LightPanel, bpy.types.Panel):
 
 
 _CLASSES = (
+    WARDMIS_OBJECT_PT_shadow_terminator,
     WARDMIS_OBJECT_PT_visibility,
     WARDMIS_OBJECT_PT_ray_visibility,
     WARDMIS_OBJECT_PT_motion_blur,

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "bsdf/batch.h"
+#include "bsdf/shadow_terminator.h"
 #include "math/component.h"
 
 namespace wardmis {
@@ -14,6 +15,7 @@ struct Surface {
   Rgb diffuse{0, 0, 0}, specular{0, 0, 0};  // albedo factors rho_d, rho_s
   float ax = 0.1f, ay = 0.1f;
   WardVariant variant = WardVariant::kWardGmd;
+  float terminator = 1;  // as of shadow_terminator.h
 
   bool hasDiffuse() const { return maxComponent(diffuse) > 0; }
   bool hasSpecular() const { return maxComponent(specular) > 0; }
@@ -28,6 +30,7 @@ struct Surface {
   Rgb lobeWeight(size_t) const { return specular; }
   float strength(size_t) const { return luminance(specular); }
   float diffuseStrength() const { return luminance(diffuse); }
+  float strength() const { return luminance(specular) + luminance(diffuse); }
   template <class T>
   Vec3<T> sampleLobe(size_t, Vec3<T> wo, Vec2<T> u) const {
     return wardSample<T>(wo, T(ax), T(ay), u);

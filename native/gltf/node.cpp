@@ -148,6 +148,15 @@ uint8_t visibility(const Json& node) {
   return extension ? readVisibility(*extension) : uint8_t{kSeenByAll};
 }
 
+ShadowTerminator terminator(const Json& node) {
+  const auto extension = node.extension(kExtension);
+  const auto json = extension ? extension->find("shadowTerminator") : std::nullopt;
+  if (!json) return {};
+  const auto [geometry, shading] = json->numbers<2>();
+  if (!(geometry >= 0 && geometry <= 1 && shading >= 0 && shading <= 1)) json->failExpected("two numbers from 0 to 1");
+  return {geometry, shading};
+}
+
 // What programs read of the object; null where the node says nothing.
 std::shared_ptr<const ObjectData> objectData(const Json& node) {
   const auto extension = node.extension(kExtension);
@@ -282,6 +291,7 @@ void readNodes(const Json& root, Accessors& accessors, Buffers& buffers, Materia
                           visibility(node),
                           hasMark(node, "holdout"),
                           hasMark(node, "shadowCatcher"),
+                          terminator(node),
                           objectData(node),
                           motionOf(node, forest.parent(i))};
         if (const auto many = node.extension("EXT_mesh_gpu_instancing")) {

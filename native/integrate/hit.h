@@ -262,19 +262,21 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     for (size_t i = 1; i < f.size(); ++i) all += f[i];
     return all;
   };
-  // sharp: in a direction which no other technique finds.
-  const auto techniques = [&](size_t own, bool sharp) {
-    return sharp ? maskOf(own) : techniquesFor<K>(plan.integrand, own);
+  constexpr TechniqueMask kAny = Techniques<K>::kAll, kByLight = maskOf(kLight),
+                          kBySurface = static_cast<TechniqueMask>(kAny & ~kByLight);
+  // among: those that find what lies there.
+  const auto techniques = [&](size_t own, TechniqueMask among) {
+    return static_cast<TechniqueMask>(techniquesFor<K>(plan.integrand, own) & among);
   };
-  const auto add = [&](size_t t, bool sharp, bool ahead, const Values& all, Rgb radiance, const Fractions<K>& p,
-                       uint8_t visibility, int set) {
+  const auto add = [&](size_t t, TechniqueMask among, bool ahead, const Values& all, Rgb radiance,
+                       const Fractions<K>& p, uint8_t visibility, int set) {
     constexpr uint8_t kAll = kSeenBySurfaces | kSeenByTranslucence;
     const bool byAll = (visibility & kAll) == kAll;
     const Values masked = byAll ? Values{} : seen(all, visibility, ahead);
     const Values& f = byAll ? all : masked;
     if (!split) {
       const Rgb value = total(f) * radiance;
-      const TechniqueMask used = techniques(t, sharp);
+      const TechniqueMask used = techniques(t, among);
       const float scale = mixture.scale(t, p, used);
       sum += value * scale;
       note(0, value, p, used, set);
@@ -283,18 +285,22 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     }
     for (size_t i = 0; i < f.size(); ++i) {
       if (!present[i] || (t != i && t != kLight)) continue;
-      const TechniqueMask used = techniques(sharp ? t : i, sharp);
+      const TechniqueMask used = techniques(i, among);
       const Rgb value = f[i] * radiance;
       const float scale = mixture.scale(t, p, used);
       sum += value * scale;
       note(i, value, p, used, set);
       if (record != nullptr && record->light != nullptr) record->light->add(componentOf(i, ahead), value * scale);
     }
-    if (record != nullptr && record->candidates != nullptr)
+    if (record != nullptr && record->candidates != nullptr && has(among, kLight)) {
+      Fractions<K> found = p;
+      for (size_t i = 0; i < K; ++i)
+        if (!has(among, i)) found[i] = 0;
       for (size_t i = 0; i < f.size(); ++i)
         for (size_t k = i + 1; k < f.size(); ++k)
           record->candidates->addBoth(i, std::abs(luminance(f[i] * radiance)), k, std::abs(luminance(f[k] * radiance)),
-                                      p, mixture.n);
+                                      found, mixture.n);
+    }
   };
 
   size_t t = 0;
@@ -313,6 +319,9 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
           x.frame.toWorld(Vec3f{static_cast<float>(wi.x), static_cast<float>(wi.y), static_cast<float>(wi.z)}));
     };
     bool sharp = false, ahead = true;  // wi leaves the surface on the viewer's side
+    float moved = 0;                   // how far light samples are, near the edge of the surface's own shadow
+    if (x.smooth.cutoff > 0 && mixture.n[kLight] > 0) [[unlikely]]
+      moved = x.smooth.amount(static_cast<float>(wi.z), dot(x.geometric, t == kLight ? light[k].direction : inWorld()));
     if constexpr (kGeneral) {
       const Vec3f d = t == kLight ? light[k].direction : inWorld();
       const float side = dot(x.geometric, d);
@@ -341,26 +350,41 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       const float cosine = static_cast<float>(wi.z) * (1 / kPi<float>);  // f_d cos for rho_d = 1, and its density
       f[kCosine] = s.diffuse * cosine;
       p[kCosine] = present[kCosine] ? cosine : 0.0f;
+      if (s.terminator > 1) [[unlikely]] {
+        const float left = leftAtTerminator(s.terminator, static_cast<float>(wi.z));
+        for (Rgb& value : f) value = value * left;
+      }
+      if (moved > 0) [[unlikely]] {
+        lit.density = s.diffuseStrength() * p[kCosine];
+        for (size_t l = 0; l < kLobes; ++l) lit.density += s.strength(l) * p[l];
+      }
     }
 
     // Light of an emitter, whose density is in p.
-    const auto addLight = [&](size_t own, Rgb radiance, uint8_t visibility) {
-      if constexpr (kGeneral)
-        if (lit.any) [[unlikely]] {
-          const float byLight = lit.share(p[kLight]);
-          Values same;
-          for (size_t i = 0; i < same.size(); ++i) same[i] = f[i] * (1 - byLight) + lit.same[i] * byLight;
-          add(own, false, ahead, same, radiance, p, visibility, set);
-          if (own == kLight) add(kLight, true, !ahead, lit.other, radiance * byLight, p, visibility, set);
-          return;
-        }
-      add(own, sharp, ahead, f, radiance, p, visibility, set);
+    const bool otherwise = kGeneral && lit.any;
+    const TechniqueMask own = sharp ? maskOf(t) : kAny;
+    const auto addLight = [&](Rgb radiance, uint8_t visibility) {
+      if (sharp || !(otherwise || moved > 0)) {
+        add(t, own, ahead, f, radiance, p, visibility, set);
+        return;
+      }
+      const float byLight = lit.share(p[kLight], s.strength());
+      if (moved > 0) {  // what light samples see from elsewhere is theirs alone
+        if (t == kLight)
+          add(t, kByLight, ahead, otherwise ? lit.same : f, radiance * byLight, p, visibility, set);
+        else
+          add(t, kBySurface, ahead, f, radiance * (1 - byLight), p, visibility, set);
+      } else {
+        Values same;
+        for (size_t i = 0; i < same.size(); ++i) same[i] = f[i] * (1 - byLight) + lit.same[i] * byLight;
+        add(t, kAny, ahead, same, radiance, p, visibility, set);
+      }
+      if (t == kLight && otherwise) add(t, kByLight, !ahead, lit.other, radiance * byLight, p, visibility, set);
     };
     if (t == kLight) {
       LightSample& l = light[k];
-      if (!(l.pdf > 0) || !(kGeneral || dot(x.geometric, l.direction) > 0)) continue;
-      if (!(maxComponent(total(f)) > 0) &&
-          !(kGeneral && lit.any && maxComponent(total(lit.same) + total(lit.other)) > 0))
+      if (!(l.pdf > 0) || !(kGeneral || dot(x.geometric, l.direction) > 0 || moved > 0)) continue;
+      if (!(maxComponent(total(f)) > 0) && !(otherwise && maxComponent(total(lit.same) + total(lit.other)) > 0))
         continue;
       world.emitters.look(l, x.position, static_cast<int>(plan.vertex));
       if (!(l.pdf > 0) || isBlack(l.radiance)) continue;
@@ -371,6 +395,15 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       if constexpr (kGeneral) shadow.path = x.path.shadow();
       shadow.path.time = x.path.time;
       shadow.left = x.primitive;
+      if (moved > 0) [[unlikely]] {
+        const Vec3f side = wi.z < T(0) ? -x.geometric : x.geometric;
+        const Placement& placed = world.geometry.placements[x.placement];
+        const Vec3f offset = placed.motion == nullptr
+                                 ? shadowOffset(world.geometry, placed, x.smooth, side, x.path.time)
+                                 : shadowOffset(world.geometry, placed.at(x.path.time), x.smooth, side, x.path.time);
+        shadow.origin = x.position + side * x.clearance + offset * moved;
+        if (!(dot(side, l.direction) > 0)) shadow.left = {};  // the face is in the way, where the smooth one is not
+      }
       if (l.distance < 1e30f) {
         // up to the lamp, or to just before the emissive surface: from the moved origin to the same point, by way of
         // differences, since the point itself would be rounded to a place beside or behind the emitter far from the
@@ -390,8 +423,8 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
         if constexpr (kGeneral) radiance *= left;
       }
       if (l.exclusive) {
-        Values each = seen(kGeneral && lit.any ? lit.same : f, l.visibility, ahead);
-        if (kGeneral && lit.any) [[unlikely]] {
+        Values each = seen(otherwise ? lit.same : f, l.visibility, ahead);
+        if (otherwise) [[unlikely]] {
           const Values more = seen(lit.other, l.visibility, !ahead);
           for (size_t i = 0; i < each.size(); ++i) each[i] += more[i];
         }
@@ -409,7 +442,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
         }
       } else {
         p[kLight] = l.pdf;
-        addLight(kLight, radiance, l.visibility);
+        addLight(radiance, l.visibility);
       }
       continue;
     }
@@ -443,7 +476,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       const auto meet = [&](const EmitterHit& e) {
         if (isHidden(e.pdf)) return;
         p[kLight] = e.pdf;
-        addLight(t, kGeneral ? e.radiance * seenThrough : e.radiance, e.visibility);
+        addLight(kGeneral ? e.radiance * seenThrough : e.radiance, e.visibility);
       };
       world.emitters.along(ray, tMax, escaped, static_cast<int>(plan.vertex), meet, sky);
     });
@@ -454,13 +487,13 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       p[kLight] = world.emitters.trianglePdf(world.geometry.placements[hit.placement], hit, d, ray.path.time);
       Rgb radiance = interact<N, K>(world.scene, world.geometry, ray, hit).emission;
       if constexpr (kGeneral) radiance *= seenThrough;
-      if (!isHidden(p[kLight])) addLight(t, radiance, world.geometry.placements[hit.placement].visibility);
+      if (!isHidden(p[kLight])) addLight(radiance, world.geometry.placements[hit.placement].visibility);
     }
     if constexpr (kGeneral)
       if (world.isBeyond(ray)) continue;
     if constexpr (kPath) {
       p[kLight] = 0;  // no light sample covers what is reflected there
-      const TechniqueMask used = techniques(t, sharp);
+      const TechniqueMask used = techniques(t, own);
       const float scale = mixture.scale(t, p, used);
       Rgb w = (split ? f[t] : total(f)) * scale;
       if constexpr (kGeneral) w *= seenThrough;

@@ -5,6 +5,7 @@
 #include "bsdf/surface.h"
 #include "integrate/expand.h"
 #include "integrate/lobe_surface.h"
+#include "integrate/terminator.h"
 #include "scene/inputs.h"
 #include "world/accel.h"
 #include "world/needs.h"
@@ -27,6 +28,7 @@ struct InteractionOf {
 
   PrimitiveId primitive;  // that it is on, where rays that leave must not meet it and may not start beside it
   float clearance = 0;    // bound on the rounding of `position` and of an intersection there, along the normal
+  SmoothFace smooth;
 
   // Start of a ray leaving towards the side of the geometric normal on which `direction` lies, so that it does not
   // meet the surface that it leaves.
@@ -190,6 +192,7 @@ InteractionOf<SurfaceOf<N, K>> interactWith(const Scene& scene, const LobeNumber
   x.material = shape.material;
   x.placement = hit.placement;
   x.wo = -ray.direction;
+  x.surface.terminator = terminatorAngle(placement.terminator.shading);
   x.path = ray.path;
   x.rayLength = hit.t;
   if (shape.strands != nullptr) [[unlikely]] {
@@ -206,13 +209,16 @@ InteractionOf<SurfaceOf<N, K>> interactWith(const Scene& scene, const LobeNumber
   ng = normalize(ng);
   Vec3f ns = ng;
   if (!shape.part->normals.empty()) {
+    const Array<Vec3f>& n = shape.part->normals;
+    if (placement.terminator.geometry > 0 && !(n[i[0]] == n[i[1]] && n[i[0]] == n[i[2]]))
+      x.smooth = {placement.terminator.geometry, hit.shape, hit.triangle, hit.u, hit.v};
     // normals stay in the mesh's space, also where positions were moved
     Vec3f own = interpolate(shape.part->normals, i, hit.u, hit.v);
     if (shape.motion != nullptr) [[unlikely]]
       own = movedNormal(shape, i, hit.u, hit.v, ray.path.time);
-    const Vec3f n = placement.toWorld.normal(own);
-    const float l2 = dot(n, n);
-    if (l2 > 0) ns = n / std::sqrt(l2);
+    const Vec3f world = placement.toWorld.normal(own);
+    const float l2 = dot(world, world);
+    if (l2 > 0) ns = world / std::sqrt(l2);
   }
   const bool turned = dot(ng, x.wo) < 0;
   if (turned) ng = -ng, ns = -ns;

@@ -9,6 +9,7 @@
 
 #include "bsdf/bump_shadow.h"
 #include "bsdf/lobe.h"
+#include "bsdf/shadow_terminator.h"
 #include "math/component.h"
 #include "mis/technique.h"
 #include "world/geometry.h"
@@ -21,11 +22,14 @@ namespace wardmis {
 template <size_t K>
 struct LitOtherwise {
   std::array<Rgb, K - 1> same{}, other{};
-  float density = 0;  // of all lobes together, wherever they may leave
+  float density = 0;  // of all lobes, wherever they may leave, times their strengths
   bool any = false;
-  // The part of light that light samples, of density `light`, bring where surface samples find it, too: Cycles' power
-  // heuristic, which is all that is left where it lets the latter find nothing.
-  float share(float light) const { return density > 0 ? 1 / (1 + (density / light) * (density / light)) : 1; }
+  // The part of light that light samples, of density `light`, bring where surface samples of this strength find it,
+  // too: Cycles' power heuristic, which is all that is left where it lets the latter find nothing.
+  float share(float light, float strength) const {
+    const float ratio = density / (strength * light);
+    return density > 0 ? 1 / (1 + ratio * ratio) : 1;
+  }
 };
 
 template <size_t K>
@@ -34,6 +38,7 @@ class LobeSurface {
   static constexpr size_t kCosine = Techniques<K>::kCosine, kSlots = Techniques<K>::kLobes;
   static constexpr int kMostLobes = 24, kMostFrames = 8;
 
+  float terminator = 1;      // as of shadow_terminator.h; what goes through the surface is as it is
   float holdout = 0;         // how much of it is a hole for the camera
   Rgb transparent{0, 0, 0};  // of the light that goes straight through, what arrives
 
@@ -161,7 +166,7 @@ class LobeSurface {
   void evaluate(Vec3<T> wi, Vec3<T> wo, bool ahead, std::array<Rgb, K - 1>& f, Fractions<K>& p,
                 LitOtherwise<K>& lit) const {
     const float cosine = std::max(static_cast<float>(wi.z), 0.0f) * (1 / kPi<float>);
-    (ahead ? f : lit.other)[kCosine] = diffuse_ * cosine;
+    (ahead ? f : lit.other)[kCosine] = diffuse_ * (cosine * left(static_cast<float>(wi.z)));
     p[kCosine] = hasDiffuse() && ahead ? cosine : 0;
     lit.same[kCosine] = f[kCosine];
     lit.density = strength_[kCosine] * cosine;
@@ -176,21 +181,21 @@ class LobeSurface {
       const bool seen = v.pdf > T(0);
       if (!seen) v = unseen(l, w, local(l, wo));
       if (!(v.pdf > T(0))) continue;
-      const Rgb value{static_cast<float>(v.fCos.x), static_cast<float>(v.fCos.y), static_cast<float>(v.fCos.z)};
-      const BumpShadow left = bump_[l.frame] == 0 ? BumpShadow{1, 1}
-                                                  : bumpShadow(bump_[l.frame], l.kind, static_cast<float>(wi.z),
-                                                               ownCosine_[l.frame], static_cast<float>(w.z));
+      const Rgb all{static_cast<float>(v.fCos.x), static_cast<float>(v.fCos.y), static_cast<float>(v.fCos.z)};
+      const Rgb value = all * left(static_cast<float>(w.z));
+      const BumpShadow shadow = bump_[l.frame] == 0 ? BumpShadow{1, 1}
+                                                    : bumpShadow(bump_[l.frame], l.kind, static_cast<float>(wi.z),
+                                                                 ownCosine_[l.frame], static_cast<float>(w.z));
       const bool sampled = seen && above == ahead;
-      if (sampled) f[slot_[i]] += value * left.bySurface;
+      if (sampled) f[slot_[i]] += value * shadow.bySurface;
       if (slot_[i] != kCosine) {
         const float density = share_[i] * static_cast<float>(v.pdf);
         if (sampled) p[slot_[i]] += density;
         lit.density += strength_[slot_[i]] * density;
       }
-      (above == ahead ? lit.same : lit.other)[slot_[i]] += value * left.byLight;
-      lit.any = lit.any || left.byLight != (sampled ? left.bySurface : 0);
+      (above == ahead ? lit.same : lit.other)[slot_[i]] += value * shadow.byLight;
+      lit.any = lit.any || shadow.byLight != (sampled ? shadow.bySurface : 0);
     }
-    if (lit.any) lit.density /= strength();
   }
 
   struct Sample {
@@ -221,14 +226,17 @@ class LobeSurface {
   template <class T>
   Rgb weight(const Sample& from, Vec3<T> wi, Vec3<T> wo) const {
     const Lobe& l = lobe_[from.lobe];
-    const Vec3<T> w = wardmis::weight(l, local(l, wi), local(l, wo));
-    return Rgb{static_cast<float>(w.x), static_cast<float>(w.y), static_cast<float>(w.z)} / share_[from.lobe];
+    const Vec3<T> out = local(l, wi), w = wardmis::weight(l, out, local(l, wo));
+    return Rgb{static_cast<float>(w.x), static_cast<float>(w.y), static_cast<float>(w.z)} *
+           (left(static_cast<float>(out.z)) / share_[from.lobe]);
   }
 
  private:
   static Component componentOf(const Lobe& l, bool ahead) {
     return isMatte(l.kind) ? Component::kDiffuse : ahead ? Component::kGlossy : Component::kTransmission;
   }
+  float left(float cosine) const { return terminator > 1 && cosine > 0 ? leftAtTerminator(terminator, cosine) : 1; }
+
   // Reflects as the cosine goes, about the surface's own normal.
   static bool byCosine(const Lobe& l) {
     return l.frame == 0 && detail::isDiffuse(l.kind) && !wardmis::transmits(l.kind);

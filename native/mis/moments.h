@@ -59,7 +59,7 @@ struct Moments {
     for (size_t k = 0; k < K; ++k)
       if (has(used, k)) q += n[k] * p[k], sum += p[k];
     if (!(q > 0)) return;
-    const bool alone = std::has_single_bit(used), aimed = (used & light) == 0 || p[kLight] > 0;
+    const bool alone = std::has_single_bit(used), aimed = (used & light) != 0 && p[kLight] > 0;
     PartMoments<K>& part = alone ? exclusive : aimed ? shared : unaimed;
     if (!aimed) used &= static_cast<TechniqueMask>(~light);
     const float overQ = f / q, g = f / sum;

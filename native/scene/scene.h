@@ -137,13 +137,20 @@ struct ObjectData {
   std::vector<std::pair<std::string, Value>> attributes;  // sorted by name
 };
 
+// What smooths the edge of a smooth surface's own shadow.
+struct ShadowTerminator {
+  float geometry = 0;  // cosine of light and face below which light samples are moved: integrate/terminator.h
+  float shading = 0;   // the light's angle to the normal is greater by a factor of 1/(1 - shading/2)
+};
+
 struct Instance {
   std::string name;
   int mesh = 0;
   Affine toWorld;
   uint8_t visibility = kSeenByAll;
-  bool holdout = false;                               // the camera sees a hole there
-  bool shadowCatcher = false;                         // the camera sees its shadows alone: CatcherPixel in film.h
+  bool holdout = false;        // the camera sees a hole there
+  bool shadowCatcher = false;  // the camera sees its shadows alone: CatcherPixel in film.h
+  ShadowTerminator terminator;
   std::shared_ptr<const ObjectData> object;           // null: as it is by default
   std::shared_ptr<const std::vector<Affine>> motion;  // toWorld at equal steps of the shutter's time; null: it stands
 };

@@ -117,8 +117,9 @@ Geometry::Geometry(const Scene& scene, bool catchersAlone) {
     }
     if (count == 0) continue;
     placements.push_back({instance.toWorld, instance.mesh, first, count, instance.holdout, instance.shadowCatcher, flat,
-                          translucence(instance.visibility, kSeenByTransmission), 0, &instance.name,
-                          instance.object.get(), instance.motion ? &frames.emplace_back(*instance.motion) : nullptr});
+                          instance.terminator, translucence(instance.visibility, kSeenByTransmission), 0,
+                          &instance.name, instance.object.get(),
+                          instance.motion ? &frames.emplace_back(*instance.motion) : nullptr});
     for (uint32_t s = first; s < first + count; ++s) {
       triangles += shapes[s].triangles;
       if (const Strands* const own = shapes[s].strands)

@@ -48,6 +48,7 @@ struct Placement {
   bool holdout = false;                 // the camera sees a hole there
   bool shadowCatcher = false;           // the camera sees its shadows alone
   bool flat = false;                    // shapes' positions are in world space already
+  ShadowTerminator terminator;
   uint8_t visibility = kSeenByAll;
   uint32_t firstEmitter = 0;  // of its emissive triangles
   const std::string* name = nullptr;

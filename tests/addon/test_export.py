@@ -536,6 +536,20 @@ class Visibility(SceneTest):
         self.assertEqual([light.name for light in scene.lights if not light.on_catchers], ["Added"])
         self.assertEqual(scene.notes, [])
 
+    def test_shadow_terminator(self):
+        """Each object's own, also of what is instanced; .1 as it comes."""
+        made = self.add_quad("Own")
+        owner, *names = compat.shadow_terminator(made)
+        for name, value in zip(names, (0.25, 0.5)):
+            setattr(owner, name, value)
+        inner = bpy.data.collections.new("Inner")
+        self.add("Inside", made.data, inner)
+        empty = self.add("Empty", None)
+        empty.instance_type, empty.instance_collection = "COLLECTION", inner
+        found = {i.name: i.shadow_terminator for i in self.gather().instances}
+        self.assertEqual(found["Own"], (0.25, 0.5))
+        np.testing.assert_allclose(found["Inside"], (0.1, 0))
+
     def test_light_linking_is_noted(self):
         quad = self.add_quad()
         if not hasattr(quad, "light_linking"):

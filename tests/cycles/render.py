@@ -62,9 +62,6 @@ def make(entry: Scene) -> None:
     ) in bpy.data.worlds:  # Cycles draws its map of an image sky as large as 2048 pixels, at a second for each render
         if world.cycles.sampling_method == "AUTOMATIC":
             world.cycles.sampling_method, world.cycles.sample_map_resolution = "MANUAL", 256
-    for made in bpy.data.objects:  # Cycles moves the rays of shadows away from smooth surfaces
-        for owner, name, value in compat.without_shadow_terminator(made):
-            setattr(owner, name, value)
 
 
 def render_scene(entry: Scene, folder: Path, first_seed: int) -> None:

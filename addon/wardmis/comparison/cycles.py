@@ -115,7 +115,7 @@ def _about(scene: Any, layer: Any, scene_file: SceneFile, plan: CyclesPlan, lost
     else:
         notes.append(f"paths end after the same bounces in both: {light_paths.in_force(scene)}")
         notes.append(
-            "clamping, filtered glossiness, light threshold, adaptive sampling, denoising, fast GI and shadow terminator offsets are off; "
+            "clamping, filtered glossiness, light threshold, adaptive sampling, denoising and fast GI are off; "
             "the first sample of Cycles' sequence, which lies in the middle of each pixel whatever the filter, is left out"
         )
     notes += different

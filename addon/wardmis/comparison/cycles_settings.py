@@ -73,9 +73,6 @@ def unbiased(scene: Any, bounces: Bounces) -> Iterator[Setting]:
     for kind, limit in bounces.by_kind().items():
         yield cycles, f"{kind}_bounces", limit
     yield cycles, "transparent_max_bounces", bounces.transparent
-    # Cycles moves the shadows' rays away from smooth surfaces
-    for obj in scene.objects:
-        yield from compat.without_shadow_terminator(obj)
 
 
 def lacks_denoiser(scene: Any) -> bool:

@@ -322,7 +322,11 @@ class _Encoder:
         for instance in instances:
             key = (instance.mesh, instance.hidden_from, instance.color, instance.index, instance.random)
             # what moves has a node of its own
-            alone_by = id(instance) if instance.motion else (instance.holdout, instance.shadow_catcher)
+            alone_by = (
+                id(instance)
+                if instance.motion
+                else (instance.holdout, instance.shadow_catcher, instance.shadow_terminator)
+            )
             groups.setdefault((*key, instance.attributes, alone_by), []).append(instance)
         nodes = []
         for (mesh, *_), members in groups.items():
@@ -444,6 +448,8 @@ def _node_extension(instance: InstanceData, mesh: MeshData) -> dict[str, Any]:
         result["holdout"] = True
     if instance.shadow_catcher:
         result["shadowCatcher"] = True
+    if any(instance.shadow_terminator):
+        result["shadowTerminator"] = list(instance.shadow_terminator)
     if instance.random:
         result["random"] = instance.random
     if instance.attributes:

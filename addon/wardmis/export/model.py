@@ -208,6 +208,7 @@ class InstanceData:
     motion: list[np.ndarray] = field(default_factory=list)  # `matrix` at equal steps of the shutter's time
     holdout: bool = False
     shadow_catcher: bool = False
+    shadow_terminator: tuple[float, float] = (0.0, 0.0)  # geometry offset and shading offset
 
 
 VISIBILITY = ("camera", "diffuse", "glossy", "transmission", "shadow")

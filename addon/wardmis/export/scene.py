@@ -293,6 +293,9 @@ class _Gatherer:
                     instance.is_instance and instance.parent is not None and instance.parent.is_shadow_catcher
                 )
                 data.shadow_catcher = obj.original.is_shadow_catcher or by_instancer
+                owner, *offsets = compat.shadow_terminator(obj)
+                geometry, shading = (float(getattr(owner, name, 0.0)) for name in offsets)
+                data.shadow_terminator = geometry, shading
                 self._describe(data, obj, instance, materials)
                 self.instances.append(data)
                 if self.motion is not None:

@@ -276,6 +276,17 @@ TEST(Glb, ReadsWhatCatchesShadows) {
   EXPECT_FALSE(scene.lights[1].onCatchers);
 }
 
+TEST(Glb, ReadsTheTerminatorOfShadows) {
+  GlbBuilder b = square();
+  EXPECT_EQ(read(b).instances.at(0).terminator.geometry, 0);
+  b.root["nodes"][0]["extensions"]["WARDMIS_scene"] = {{"shadowTerminator", {0.25, 0.5}}};
+  const Scene scene = read(b);
+  EXPECT_EQ(scene.instances.at(0).terminator.geometry, 0.25f);
+  EXPECT_EQ(scene.instances.at(0).terminator.shading, 0.5f);
+  b.root["nodes"][0]["extensions"]["WARDMIS_scene"]["shadowTerminator"][1] = 2;
+  EXPECT_THROW(read(b), Error);
+}
+
 TEST(Glb, MultipliesTheHierarchy) {
   GlbBuilder b = square();
   b.root["nodes"] = {

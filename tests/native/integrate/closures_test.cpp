@@ -12,16 +12,6 @@ using namespace test;
 
 constexpr Rgb kWhite{1, 1, 1};
 
-Closure closure(ClosureType type, Rgb color = kWhite, float weight = 1) {
-  Closure c;
-  c.type = type;
-  if (type == ClosureType::kPrincipled3) c.version = 3;
-  c.weight.value = kWhite * weight;
-  for (const ClosureInput& i : info(type).colors) c.colors.push_back({kWhite * i.value, {}});
-  for (const ClosureInput& i : info(type).scalars) c.scalars.push_back({i.value, {}});
-  if (!c.colors.empty()) c.colors[0].value = color;
-  return c;
-}
 Closure with(Closure c, size_t scalar, float value) {
   c.scalars[scalar].value = value;
   return c;

@@ -17,6 +17,18 @@ inline Material ward(Rgb diffuse, Rgb specular, float alpha, WardVariant variant
   return m;
 }
 
+// With its parameters as they come.
+inline Closure closure(ClosureType type, Rgb color = {1, 1, 1}, float weight = 1) {
+  Closure c;
+  c.type = type;
+  if (type == ClosureType::kPrincipled3) c.version = 3;
+  c.weight.value = {weight, weight, weight};
+  for (const ClosureInput& i : info(type).colors) c.colors.push_back({{i.value, i.value, i.value}, {}});
+  for (const ClosureInput& i : info(type).scalars) c.scalars.push_back({i.value, {}});
+  if (!c.colors.empty()) c.colors[0].value = color;
+  return c;
+}
+
 inline void addMesh(Scene& scene, std::vector<Vec3f> positions, std::vector<uint32_t> indices, int material,
                     std::vector<Vec3f> normals = {}) {
   MeshPart part;
