@@ -73,7 +73,7 @@ TEST(Moments, ZerosAndUnusedTechniquesAddNothing) {
   m.add(0, {1, 1, 1}, {1, 1, 1}, Techniques<3>::kAll);
   EXPECT_EQ(m.shared.second, (Fractions<3>{}));
   m.add(2, {0.25f, 0.5f, 7}, {4, 4, 4}, maskOf(0) | maskOf(1));
-  EXPECT_EQ(m.shared.second, (Fractions<3>{2 / 0.25f * 2 / 3, 2 / 0.5f * 2 / 3, 0}));
+  EXPECT_EQ(m.unaimed.second, (Fractions<3>{2 / 0.25f * 2 / 3, 2 / 0.5f * 2 / 3, 0}));
   EXPECT_EQ(m.mean[2], 0);
   EXPECT_EQ(m.square[2], 0);
 }
