@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import sys
 from collections.abc import Iterator
 from typing import Any
 
@@ -341,6 +342,21 @@ def rolling_shutter(scene: Any) -> float | None:
 def motion_settings(obj: Any) -> Any:
     """An object's `use_motion_blur`, `use_deform_motion` and `motion_steps`; None where Cycles, whose they are, is off."""
     return getattr(obj, "cycles", None)
+
+
+@contextlib.contextmanager
+def deep_recursion() -> Iterator[None]:
+    """For calls as deep as chains of nodes are long, within the block, or as a decorator.
+
+    Python keeps calls of its own functions off the machine's stack from 3.11 on, and minds that stack from 3.12 on.
+    """
+    before = sys.getrecursionlimit()
+    deep = 200_000 if sys.version_info >= (3, 12) else 20_000 if sys.version_info >= (3, 11) else before
+    sys.setrecursionlimit(max(before, deep))
+    try:
+        yield
+    finally:
+        sys.setrecursionlimit(before)
 
 
 # --- nodes ----------------------------------------------------------------------------------------------------------

@@ -255,6 +255,18 @@ class NotUnderstood(MaterialCase):
         self.assertRgb(self.export(mix).diffuse.value, (0, 0, 0))
         self.assertNoted("linked in a circle")
 
+    def test_long_chains_of_nodes_are_no_circles(self):
+        """Of more nodes than Python commonly has calls within each other."""
+        last = self.node("ShaderNodeTexCoord").outputs["Generated"]
+        for _ in range(300):
+            node = self.node("ShaderNodeMath", i1=0.01)
+            self.tree.links.new(last, node.inputs[0])
+            last = node.outputs[0]
+        shader = self.node("ShaderNodeBsdfDiffuse")
+        self.tree.links.new(last, shader.inputs["Color"])
+        self.assertEqual(len(self.export(shader).program.operations), 303)
+        self.assertEqual(self.context.notes, [])
+
     def test_muted_output_is_black_and_named(self):
         self.output.mute = True
         if not self.output.mute:

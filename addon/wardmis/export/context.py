@@ -50,6 +50,8 @@ class ExportContext:
         self.notes: list[str] = []
         self.owner = ""
         self.foldings: dict[Any, Any] = {}  # by tree: what folding.py finds out about it
+        self.zones: dict[Any, Any] = {}  # by tree: tree.py's
+        self.computed: dict[Any, bool] = {}  # by node, and what is entered to reach it: unrolled.py's
         self.skies: dict[str, Any] = {}  # by settings: what measured_sky.py knows of them
         self.tell = tell or (lambda _: None)
         self._export_image = export_image

@@ -27,6 +27,7 @@ SHEARED = 1e-3  # the cosine between an area light's sides, from which on they c
 WIDE = 1e-4  # a spread that is nearer to 180 degrees is none
 
 
+@compat.deep_recursion()
 def export_light(
     light: Any,
     name: str,
@@ -76,7 +77,7 @@ def _nodes(light: Any, matrix: np.ndarray, context: ExportContext, found: LampOb
         else:
             return Light(p, emission(p, output), owner)
     except RecursionError:
-        context.note(f"{owner.place} has nodes that are linked in a circle; it gives no light")
+        context.note(f"{owner.place} has nodes that are linked in a circle, or in too long a chain; it gives no light")
     except NotFinite:
         pass  # noted where it was found
     return Light(p, BLACK, owner)

@@ -20,6 +20,7 @@ from .socket_value import NotFinite
 from .tree import Owner, output_use
 
 
+@compat.deep_recursion()
 def export_material(material: Any, context: ExportContext) -> MaterialData:
     owner = Owner("material", f"material '{material.name}' on object '{context.owner}'", context)
     name = material.name
@@ -40,8 +41,8 @@ def export_material(material: Any, context: ExportContext) -> MaterialData:
             return data
     except NotFinite:
         pass  # noted where it was found
-    except RecursionError:  # Blender lets users link nodes in a circle
-        context.note(f"{owner.place} has nodes that are linked in a circle; rendered as black, as in Cycles")
+    except RecursionError:
+        context.note(f"{owner.place} has nodes that are linked in a circle, or in too long a chain; rendered as black")
         return MaterialData(name)
     return MaterialData(name, diffuse=ColorInput(MISSING))
 

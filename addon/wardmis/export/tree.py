@@ -8,10 +8,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from .. import compat
+from . import unrolled
 from .context import ExportContext
+from .zones import Entered, Zones, same_item
 
 RAYS = ("camera", "diffuse", "glossy", "transmission")  # kinds of ray that may see different skies
-LONGEST_CHAIN = 10_000  # of reroutes, muted nodes and borders of groups; a longer one is a circle
+LONGEST_CHAIN = 100_000  # of reroutes, muted nodes, and borders of groups and zones; a longer one is a circle
 
 
 @dataclass(frozen=True)
@@ -46,11 +48,23 @@ class Source:
 
 @dataclass(frozen=True)
 class NodeUse:
-    """A node, and the group nodes that one enters to reach it: a group may be used several times, with other inputs."""
+    """A node, and what one enters to reach it: a group may be used several times, with other inputs, and so may a zone."""
 
     node: Any
-    groups: tuple[Any, ...]
+    entered: tuple[Entered, ...]
     owner: Owner
+
+    @property
+    def place(self) -> tuple[Any, ...]:
+        return (self.node.as_pointer(), *(entered.place for entered in self.entered))
+
+    @property
+    def zones(self) -> Zones:
+        return self._zones_of(self.node)
+
+    def other(self, node: Any) -> NodeUse:
+        """Another node at the same place."""
+        return NodeUse(node, self.entered, self.owner)
 
     def note(self, text: str) -> None:
         label = self.node.bl_label
@@ -60,93 +74,122 @@ class NodeUse:
         return name in self.node.inputs
 
     def source(self, key: str | int) -> Source:
-        return self._follow(self.node.inputs[key])
+        socket = self.node.inputs[key]
+        return self._follow(socket, self._link_to(socket))
+
+    def sources(self, key: str | int) -> list[Source]:
+        """The same of an input that takes several links."""
+        socket = self.node.inputs[key]
+        return [self._follow(socket, link) for link in _links_to(socket)]
 
     def is_linked(self, name: str) -> bool:
-        """Whether another node feeds the input of this name, if there is one."""
-        return self.has(name) and self.source(name).use is not None
+        """Whether something feeds the input of this name, if there is one."""
+        if not self.has(name):
+            return False
+        source = self.source(name)
+        if source.use is not None or source.is_nothing or not compat.NODE_TREES_ARE_INLINED:
+            return source.use is not None
+        return not self.is_left_open(name, source)
 
-    def _follow(self, socket: Any) -> Source:
+    def is_left_open(self, key: str | int, source: Source) -> bool:
+        """Whether Cycles finds nothing linked to an input, which receives `source`, so that it links there what it has for that.
+
+        Since Blender 5.0 it finds the value of a group's or a zone's input that nothing feeds, unless neither shows a value.
+        """
+        own = self.node.inputs[key]
+        if source.use is not None or source.socket is None or source.socket == own:
+            return source.use is None and source.socket == own
+        hidden = own.hide_value and source.socket.hide_value
+        return compat.NODE_TREES_ARE_INLINED and hidden and not unrolled.is_computed(self)
+
+    def is_fixed(self, key: str | int) -> bool:
+        """Whether Blender itself knows what an input receives, before it gives the tree to Cycles."""
+        source = self.source(key)
+        if source.use is not None:
+            return unrolled.is_computed(source.use)
+        is_texture = self.node.bl_idname.startswith("ShaderNodeTex")
+        return not (is_texture and source.socket == self.node.inputs[key] and source.socket.hide_value)
+
+    def _follow(self, own: Any, link: Any) -> Source:
         """From input to input against the links, through everything that only hands on.
 
         RecursionError where they go in a circle. Before Blender 5.0 each thing on the way converts to its own type and, if nothing is behind it, is 0; later ones are gone
-        before anything is evaluated.
+        before anything is evaluated, and convert only what Blender itself knows.
         """
-        groups, target = self.groups, socket
-        kinds: list[str] = [socket.type]  # from the last to the first
+        entered, socket, target = self.entered, own, own
+        kinds: list[str] = [own.type]  # from the last to the first
+        known = 1  # how many of them are on the way to `target`
         hands_on = False  # whether `socket` belongs to a reroute or a muted node
-
-        def converts(passed: Any) -> None:
-            if not compat.NODE_TREES_ARE_INLINED:
-                kinds.append(passed.type)
-
-        def found(output: Any, use: NodeUse | None = None) -> Source:
-            if output is not None:
-                kinds.append(output.type)
-            return Source(output, use, tuple(reversed(kinds)))
-
+        nothing = Source(None, None, (own.type,))
         for _ in range(LONGEST_CHAIN):
-            link = self._link_to(socket)
+            fault = self._zones_of(socket.node).fault
+            if fault:
+                self.note(f"hangs on a node tree of which Blender makes nothing, because {fault}")
+                return nothing
             node: Any = link.from_node if link else None
             output: Any = link.from_socket if link else None
             through = _handed_on(node, output) if link else None
             if through is not None:
-                converts(output)
+                kinds.append(output.type)
                 socket, hands_on = through, True
             elif node is None or node.mute:  # no way through a muted node: as if there were no link
-                return found(target if compat.NODE_TREES_ARE_INLINED else None if hands_on else socket)
-            elif node.bl_idname == "NodeGroupInput":
-                if not groups:
-                    return found(None)
-                socket = target = _same(groups[-1].inputs, output)
-                groups, hands_on = groups[:-1], False
-                converts(socket)
-            elif is_group(node):
-                converts(output)
-                if node.node_tree is not None and not _has_inside(node):
-                    NodeUse(node, groups, self.owner).note(_lacking(node.node_tree))
-                ends = [n for n in _nodes_of(node) if n.bl_idname == "NodeGroupOutput" and n.is_active_output]
-                if not ends:
-                    return found(None)
-                socket = target = _same(ends[0].inputs, output)
-                groups, hands_on = (*groups, node), False
-            elif (chosen := NodeUse(node, groups, self.owner).handed_on(output)) is not None:
-                (socket, groups), hands_on = chosen, False
-                target = socket
-            elif output.type == "SHADER" and kinds[-1] != "SHADER":  # no number can be made of a shader
-                return found(target)
+                if compat.NODE_TREES_ARE_INLINED:
+                    return Source(target, None, tuple(reversed(kinds[:known])))
+                return Source(None if hands_on else socket, None, tuple(reversed(kinds)))
             else:
-                return found(output, NodeUse(node, groups, self.owner))
+                use = NodeUse(node, self._zones_of(node).left(entered, node), self.owner)
+                handed = use._handed_on(output)
+                if handed is None:
+                    return self._given(own, target, kinds, output, use)
+                socket, entered = handed
+                if socket is None:
+                    return nothing
+                kinds += [output.type, socket.type]
+                known, target, hands_on = len(kinds), socket, False
+            link = self._link_to(socket)
         raise RecursionError
 
-    def handed_on(self, output: Any) -> tuple[Any, tuple[Any, ...]] | None:
-        """The input, and its groups, that a menu's switch or a bundle hands on to an output; both came with Blender 5."""
-        if self.node.bl_idname == "GeometryNodeMenuSwitch" and output.identifier == "Output":
-            chosen = self.chosen()
-            found = next((s for s in self.node.inputs[1:] if s.name == chosen), None)
-            return None if found is None else (found, self.groups)
-        if self.node.bl_idname == "NodeSeparateBundle":
-            bundle = self.source("Bundle").use
-            if (
-                bundle is not None
-                and bundle.node.bl_idname == "NodeCombineBundle"
-                and output.name in bundle.node.inputs
-            ):
-                return bundle.node.inputs[output.name], bundle.groups
-        return None
+    def _given(self, own: Any, target: Any, kinds: list[str], output: Any, use: NodeUse) -> Source:
+        """What an input receives from a node's output through sockets of these kinds."""
+        inlined = compat.NODE_TREES_ARE_INLINED
+        if output.type == "SHADER" and kinds[0 if inlined else -1] != "SHADER":  # no number can be made of a shader
+            return Source(own if inlined else target, None, (own.type,) if inlined else tuple(reversed(kinds)))
+        if output.type in unrolled.GONE and output.type != own.type:
+            return Source(None, None, (own.type,))
+        kinds = [*kinds, output.type]
+        if inlined and len(set(kinds)) > 1 and not unrolled.is_computed(use):
+            kinds = [own.type, output.type]
+        return Source(output, use, tuple(reversed(kinds)))
 
-    def chosen(self) -> str | None:
-        """The item of a menu, if it is the same everywhere."""
-        source = self.source("Menu")
-        return source.socket.default_value if source.use is None and source.socket is not None else None
+    def _handed_on(self, output: Any) -> unrolled.Handed | None:
+        """The input that a node hands on to an output, and what is entered to reach it; None for what has a value of its own."""
+        node = self.node
+        if node.bl_idname == "NodeGroupInput":
+            groups = [index for index, entered in enumerate(self.entered) if not entered.is_zone]
+            if not groups:
+                return unrolled.NOTHING
+            return same_item(self.entered[groups[-1]].node.inputs, output), self.entered[: groups[-1]]
+        if not is_group(node):
+            return unrolled.handed_on(self, output)
+        if node.node_tree is not None and not _has_inside(node):
+            self.note(_lacking(node.node_tree))
+        ends = [n for n in _nodes_of(node) if n.bl_idname == "NodeGroupOutput" and n.is_active_output]
+        return (same_item(ends[0].inputs, output), (*self.entered, Entered(node))) if ends else unrolled.NOTHING
 
     def _link_to(self, socket: Any) -> Any:
         """The link that feeds an input."""
-        link = _link_to(socket)
-        if link is None or link.is_valid:
+        link = next(_links_to(socket), None)
+        if link is None or link.is_valid or link.from_socket.type in unrolled.GONE:
             return link
         self.note("has nodes before it that are linked in a circle; such a link is left out, as in Cycles")
         return None
+
+    def _zones_of(self, node: Any) -> Zones:
+        tree, known = node.id_data, self.owner.context.zones
+        key = self.owner.place, tree.as_pointer()
+        if key not in known:
+            known[key] = Zones(tree)
+        return known[key]
 
 
 def is_group(node: Any) -> bool:
@@ -161,8 +204,8 @@ def output_use(tree: Any, name: str, owner: Owner) -> NodeUse | None:
     """
     if not compat.NODE_TREES_ARE_INLINED:
         for groups in _group_paths(tree, ()):
-            node = _nodes_output(groups[-1].node_tree)
-            if node is not None and name in node.inputs and _link_to(node.inputs[name]) is not None:
+            node = _nodes_output(groups[-1].node.node_tree)
+            if node is not None and name in node.inputs and any(_links_to(node.inputs[name])):
                 return NodeUse(node, groups, owner)
     node = _nodes_output(tree)
     return None if node is None else NodeUse(node, (), owner)
@@ -174,12 +217,13 @@ def _nodes_output(tree: Any) -> Any:
     return None if node is None or node.mute else node
 
 
-def _group_paths(tree: Any, groups: tuple[Any, ...]) -> Iterator[tuple[Any, ...]]:
+def _group_paths(tree: Any, groups: tuple[Entered, ...]) -> Iterator[tuple[Entered, ...]]:
     """All groups in use, inner ones first, each with those around it."""
     for node in tree.nodes:
         if is_group(node) and not node.mute and _has_inside(node):
-            yield from _group_paths(node.node_tree, (*groups, node))
-            yield (*groups, node)
+            inside = (*groups, Entered(node))
+            yield from _group_paths(node.node_tree, inside)
+            yield inside
 
 
 def _has_inside(group: Any) -> bool:
@@ -196,11 +240,10 @@ def _nodes_of(group: Any) -> Any:
     return group.node_tree.nodes if _has_inside(group) else ()
 
 
-def _link_to(socket: Any) -> Any:
-    """The link at an input; muted ones, and those from or to sockets that a node does not use now, do not count."""
-    if not socket.is_linked or not socket.enabled:
-        return None
-    return next((link for link in socket.links if not link.is_muted and link.from_socket.enabled), None)
+def _links_to(socket: Any) -> Iterator[Any]:
+    """The links at an input; muted ones, and those from or to sockets that a node does not use now, do not count."""
+    if socket.is_linked and socket.enabled:
+        yield from (link for link in socket.links if not link.is_muted and link.from_socket.enabled)
 
 
 def _handed_on(node: Any, output: Any) -> Any:
@@ -210,8 +253,3 @@ def _handed_on(node: Any, output: Any) -> Any:
     if node.mute:
         return next((link.from_socket for link in node.internal_links if link.to_socket == output), None)
     return None
-
-
-def _same(sockets: Any, wanted: Any) -> Any:
-    """The socket on the other side of a group's border."""
-    return next(socket for socket in sockets if socket.identifier == wanted.identifier)

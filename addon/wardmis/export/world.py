@@ -49,12 +49,15 @@ def _key(sky: WorldData) -> Any:
     return (sky.radiance, sky.texture, sky.projection, sky.matrix.tobytes(), operations, sky.result, sky.cone)
 
 
+@compat.deep_recursion()
 def _seen(world: Any, owner: Owner) -> list[WorldData]:
     """What the owner's kind of ray sees."""
     try:
         skies = _translate(world, owner)
     except RecursionError:
-        owner.context.note(f"{owner.place} has nodes that are linked in a circle; it gives no light")
+        owner.context.note(
+            f"{owner.place} has nodes that are linked in a circle, or in too long a chain; it gives no light"
+        )
         return []
     except NotFinite:
         return []  # noted where it was found

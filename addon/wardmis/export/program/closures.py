@@ -14,6 +14,7 @@ from .builder import Value, is_constant, is_zero
 from .reader import Reader
 
 WHITE, BLACK = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
+MOST_SHADERS = 4096  # each time that one is met on the way from the output; zones can double them again and again
 
 
 @dataclass
@@ -36,6 +37,8 @@ class Shading:
         self.p = p
         self.closures: list[Closure] = []
         self.emission: Value = BLACK
+        self._left = MOST_SHADERS
+        self._open: set[Any] = set()  # what is being read
 
     def read(self, use: NodeUse, key: str | int, weight: Value = 1.0) -> None:
         """What an input for a shader receives; nothing connected is black, as in Cycles."""
@@ -49,11 +52,21 @@ class Shading:
             return
         origin = source.use
         assert origin is not None
+        if self._left == 0:
+            use.owner.context.note(
+                f"{use.owner.place}: its nodes make more shaders than can be rendered; the first {MOST_SHADERS} are"
+            )
+            return
+        self._left -= 1
         kind = origin.node.bl_idname
         if kind not in SHADERS:
             self.add_unknown(origin, weight)
             return
+        if origin.place in self._open:
+            raise RecursionError
+        self._open.add(origin.place)
         SHADERS[kind](origin, self, weight)
+        self._open.remove(origin.place)
 
     def add_unknown(self, use: NodeUse, weight: Value) -> None:
         use.note("is not supported as a surface; rendered as grey and diffuse")

@@ -50,6 +50,14 @@ COMPUTED = {
     "ShaderNodeBlackbody",
     "ShaderNodeMapping",
 }
+# and what has one whatever its inputs are
+SHARED = {
+    "FunctionNodeInputBool",
+    "FunctionNodeInputInt",
+    "FunctionNodeInputVector",
+    "GeometryNodeMenuSwitch",
+    "GeometryNodeRepeatInput",
+}
 
 
 @dataclass(frozen=True)
@@ -69,7 +77,7 @@ class Link:
 
     @property
     def place(self) -> tuple[Any, ...]:
-        return (*_place(self.use), self.socket.identifier)
+        return (*self.use.place, self.socket.identifier)
 
     @property
     def identity(self) -> tuple[Any, ...]:
@@ -88,6 +96,7 @@ class Folding:
         self._inputs: dict[tuple[Any, ...], Folded] = {}
         self._outputs: dict[Place, Constant | int | tuple[int, ...] | None] = {}
         self._visited: set[Place] = set()
+        self._open: set[Place] = set()  # inputs being read
         self._alphas: set[Any] = set()
         for end in ENDS:
             use = output_use(tree, end, owner)
@@ -136,9 +145,13 @@ class Folding:
 
     def _input(self, use: NodeUse, key: int) -> Folded:
         """What an input receives."""
-        place = (*_place(use), key)
+        place = (*use.place, key)
+        if place in self._open:
+            raise RecursionError
         if place not in self._inputs:
+            self._open.add(place)
             self._inputs[place] = self._folded_input(use, key)
+            self._open.remove(place)
         return self._inputs[place]
 
     def _folded_input(self, use: NodeUse, key: int) -> Folded:
@@ -165,6 +178,8 @@ class Folding:
     def _folded_output(self, use: NodeUse, output: Any) -> Constant | int | tuple[int, ...] | None:
         kind = use.node.bl_idname
         keys = _enabled(use)
+        if kind in SHARED:
+            return _computed(use, output, {})
         if kind not in COMPUTED and kind not in FOLDS:
             return keys
         inputs = {key: self._input(use, key) for key in keys}
@@ -183,7 +198,9 @@ class _WithConstants(NodeUse):
     def source(self, key: str | int) -> Source:
         index = key if isinstance(key, int) else list(self.node.inputs).index(self.node.inputs[key])
         socket = self.node.inputs[index]
-        given = SimpleNamespace(default_value=self.constants[index], name=socket.name, type=socket.type)
+        given = SimpleNamespace(
+            default_value=self.constants[index], name=socket.name, type=socket.type, hide_value=False
+        )
         return Source(given, None, (socket.type,))
 
 
@@ -192,7 +209,7 @@ def _computed(use: NodeUse, output: Any, constants: dict[int, Constant]) -> Cons
 
     if any(x.value is None for x in constants.values()):
         return Constant(None)
-    fixed = _WithConstants(use.node, use.groups, use.owner, {key: x.value for key, x in constants.items()})
+    fixed = _WithConstants(use.node, use.entered, use.owner, {key: x.value for key, x in constants.items()})
     try:
         return _known(NODES[use.node.bl_idname](fixed, output, Reader(use.owner.kind)))
     except NotFinite:
@@ -216,10 +233,6 @@ def _as_kinds(use: NodeUse, given: Constant, kinds: tuple[str, ...]) -> Constant
     if given.value is None or not kinds:
         return given
     return _known(Reader(use.owner.kind).converted(constant(given.value, kind_of_socket(kinds[0])), kinds))
-
-
-def _place(use: NodeUse) -> Place:
-    return (use.node.as_pointer(), *(group.as_pointer() for group in use.groups))
 
 
 def _enabled(use: NodeUse) -> tuple[int, ...]:

@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 
 from ... import compat
+from .. import unrolled
 from ..attribute import (
     CENTER,
     DEFAULT_COLOR,
@@ -45,8 +46,12 @@ def _of_node(name: str) -> Any:
 
 def _menu(use: NodeUse, output: Any, _p: Reader) -> Value | None:
     """Whether an item is the chosen one; what that hands on is read elsewhere (tree.py)."""
-    chosen = use.chosen()
+    chosen = unrolled.chosen(use)
     return None if chosen is None or output.identifier == "Output" else float(output.name == chosen)
+
+
+def _iteration(use: NodeUse, _output: Any, _p: Reader) -> Value:
+    return float(use.entered[-1].iteration)
 
 
 def _scene_time(use: NodeUse, output: Any, _p: Reader) -> Value:
@@ -323,5 +328,6 @@ SHARED = {
     "FunctionNodeInputInt": _of_node("integer"),
     "FunctionNodeInputVector": _of_node("vector"),
     "GeometryNodeMenuSwitch": _menu,
+    "GeometryNodeRepeatInput": _iteration,
     "GeometryNodeInputSceneTime": _scene_time,
 }

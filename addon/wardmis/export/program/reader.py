@@ -81,11 +81,7 @@ class Reader(Builder):
     def read(self, use: NodeUse, key: str | int, implicit: Callable[[], Value] | None = None) -> Value:
         """`implicit`: what Cycles links to it where nothing is."""
         source = use.source(key)
-        if (
-            implicit is not None
-            and source.use is None
-            and (compat.NODE_TREES_ARE_INLINED or source.socket == use.node.inputs[key])
-        ):
+        if implicit is not None and use.is_left_open(key, source):
             return implicit()
         return self.converted(self._first(use, source, key), source.kinds)
 
@@ -139,11 +135,17 @@ class Reader(Builder):
         """Blender's implicit conversions of a value of the first kind of socket to the others in turn."""
         for before, after in pairwise(kinds):
             if after in NUMBERS and kind_of(value) == "vector":
-                value = self("luminance", value, version=compat.CYCLES) if before == "RGBA" else self("mean", value)
+                value = (
+                    self("luminance", value, version=compat.CYCLES)
+                    if before == "RGBA"
+                    else self("vector-length" if after == "BOOLEAN" else "mean", value)
+                )
             elif after not in NUMBERS:
                 value = self.vector(value)
             if after == "INT" and before != "INT":
                 value = self("truncate", value)
+            if after == "BOOLEAN" and before != "BOOLEAN":
+                value = self("greater-than", value, 0.0)
         return value
 
     def _first(self, use: NodeUse, source: Source, key: str | int) -> Value:
@@ -155,14 +157,7 @@ class Reader(Builder):
         return self._given(source.use, source.socket, use, key)
 
     def _given(self, origin: NodeUse, output: Any, use: NodeUse, key: str | int) -> Value:
-        place = (
-            origin.node.as_pointer(),
-            *(g.as_pointer() for g in origin.groups),
-            output.identifier,
-            self.shift,
-            self.is_light,
-            self.discs,
-        )
+        place = (origin.place, output.identifier, self.shift, self.is_light, self.discs)
         if place in self._outputs:
             known = self._outputs[place]
             if known is None:

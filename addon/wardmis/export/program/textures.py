@@ -62,7 +62,7 @@ def _shows_alpha(use: NodeUse) -> bool:
     """Whether Cycles finds the node's Alpha used; of an environment it does not ask."""
     if use.node.bl_idname != "ShaderNodeTexImage" or use.node.image.alpha_mode not in {"STRAIGHT", "PREMUL"}:
         return False
-    tree = (use.groups[0] if use.groups else use.node).id_data
+    tree = (use.entered[0] if use.entered else use).node.id_data
     foldings, key = use.owner.context.foldings, (use.owner.place, tree.as_pointer())
     if key not in foldings:
         foldings[key] = Folding(use.owner, tree)
