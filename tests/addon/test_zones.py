@@ -135,6 +135,24 @@ class Zones(unittest.TestCase):
                     self.check(end.outputs["V"])
                     self.check(t.math("ADD", end.outputs["V"], t.path()))
 
+    def test_what_else_converts(self):
+        """A node for that, and vectors of two and four numbers."""
+        t = self.t
+        color = t.node("ShaderNodeCombineXYZ", 0.2, 0.4, 2.6).outputs[0]
+        for given in (color, t.node("ShaderNodeTexCoord").outputs[0], None):
+            for kind in ("INT", "BOOLEAN", "FLOAT", "VECTOR", "RGBA"):
+                node = t.tree.nodes.new("NodeImplicitConversion")
+                node.data_type = kind
+                t.feed(node.inputs[0], given)
+                self.check(node.outputs[0])
+                self.assertEqual(self.context.notes, [])
+            for dimensions in (2, 3, 4):
+                inside, entry, leaves = t.group([("VECTOR", "V")], [("RGBA", "C")])
+                inside.tree.interface.items_tree["V"].dimensions = dimensions
+                inside.feed(leaves[0], entry["V"])
+                own = (0.2, 0.4, 0.6, 0.8)[:dimensions]
+                self.check(t.use(inside, given or own)[0])
+
     def test_shaders_are_items(self):
         t = self.t
         for given in (None, t.node("ShaderNodeBsdfDiffuse").outputs[0], t.math("ADD", 0.7, 0.0), t.path()):
@@ -189,6 +207,20 @@ class Zones(unittest.TestCase):
         found = export_material(self.material, self.context)
         self.assertEqual(found.emission.value, (MOST_ITERATIONS,) * 3)
         self.assertNoted(f"has {MOST_ITERATIONS + 1} iterations", "so many are used")
+
+    def test_alpha_of_images_inside(self):
+        """Whether it is used changes their colours; here it is in none but the second iteration."""
+        t = self.t
+        image = bpy.data.images.new("I", 2, 2, alpha=True)
+        for switched in (0.0, 1.0):
+            start, end = t.repeat([("VECTOR", "V")], 2, t.node("ShaderNodeTexCoord").outputs["UV"])
+            texture = t.node("ShaderNodeTexImage", start.outputs["V"], image=image)
+            share = t.math("MULTIPLY", start.outputs["Iteration"], switched)
+            alpha = t.math("MULTIPLY", texture.outputs["Alpha"], share)
+            t.feed(
+                end.inputs["V"], t.node("ShaderNodeMixRGB", alpha, texture.outputs["Color"], (1, 0, 0, 1)).outputs[0]
+            )
+            self.check(end.outputs["V"])
 
     def test_many_iterations(self):
         """A chain of nodes that is longer than Python commonly calls; and more shaders than one can wait for."""

@@ -149,8 +149,14 @@ def _alone(use: NodeUse) -> Handed:
     return NOTHING
 
 
+def _converted(use: NodeUse, _output: Any) -> Handed:
+    """What its sockets' kinds convert."""
+    return use.node.inputs[0], use.entered
+
+
 NODES: dict[str, Callable[[NodeUse, Any], Handed | None]] = {
     "GeometryNodeMenuSwitch": _menu,
+    "NodeImplicitConversion": _converted,
     "NodeSeparateBundle": _separate,
     "GeometryNodeRepeatInput": _repeat,
     "GeometryNodeRepeatOutput": _repeated,
