@@ -90,6 +90,11 @@ class Zones(unittest.TestCase):
                 self.check(self.powers(count))
         self.assertEqual(self.context.notes, [])
 
+    def test_nodes_of_zones_cannot_be_muted(self):
+        for node in (*self.t.repeat(X, 2), *self.t.closure(X, X)):
+            node.mute = True
+            self.assertFalse(node.mute)
+
     def test_what_counts_as_a_constant_number_of_iterations(self):
         t = self.t
         for constant in (
