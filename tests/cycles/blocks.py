@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether two sets of renders are of one picture: the means of blocks of 8 x 8 pixels, and how sure they are.
+"""Whether two sets of renders are of one picture: the means of square blocks of pixels, and how sure they are.
 
 Each engine renders with several seeds, whose spread gives the error of its mean (Welch's t, counted as the normal deviate of the same
 probability). A block fails where it lies further from Cycles' than the scene's tolerance, by more than LIMIT standard errors; the
@@ -14,7 +14,6 @@ import exr
 import numpy as np
 from metrics import normal_deviate
 
-BLOCK = 8
 LIMIT = 4.0
 DARK = 0.2  # of the brightest block: in darker ones a deviation counts relative to this
 
@@ -45,10 +44,15 @@ class Deviation:
         """One standard error of the worst block."""
         return float(self.error.ravel()[np.abs(self.relative).argmax()])
 
+    @property
+    def most_noise(self) -> float:
+        """The largest standard error of any block: by how much the picture may differ somewhere without being found."""
+        return float(self.error.max())
 
-def deviation(folder: Path, name: str, within: float) -> Deviation:
-    """ValueError where the images are not of one size, or have no finite numbers."""
-    ours, theirs = (block_means(images(folder, name, engine)) for engine in ("wardmis", "cycles"))
+
+def deviation(folder: Path, name: str, within: float, block: int) -> Deviation:
+    """`block`: pixels a side. ValueError where the images are not of one size, or have no finite numbers."""
+    ours, theirs = (block_means(images(folder, name, engine), block) for engine in ("wardmis", "cycles"))
     if ours.shape != theirs.shape:
         raise ValueError("the images differ in size")
     a, b = (x.mean(axis=0) for x in (ours, theirs))
@@ -72,11 +76,11 @@ def images(folder: Path, name: str, engine: str) -> np.ndarray:
     return stack
 
 
-def block_means(stack: np.ndarray) -> np.ndarray:
+def block_means(stack: np.ndarray, block: int) -> np.ndarray:
     """(seeds, blocks + 1, 4). The blocks at the lower and right border may be smaller; the last one is the whole image."""
     sums, counts = stack, np.ones_like(stack[:1])
     for axis in (1, 2):
-        starts = range(0, stack.shape[axis], BLOCK)
+        starts = range(0, stack.shape[axis], block)
         sums, counts = (np.add.reduceat(x, starts, axis=axis) for x in (sums, counts))
     blocks = (sums / counts).reshape(len(stack), -1, 4)
     return np.concatenate([blocks, stack.mean(axis=(1, 2))[:, None]], axis=1)

@@ -100,7 +100,8 @@ def main() -> None:
         except Exception as exception:
             traceback.print_exc()
             error = str(exception).strip() or repr(exception)
-        outcome.write_text(json.dumps({"within": entry.within, "why": entry.why, "error": error}))
+        limits = {name: getattr(entry, name) for name in ("within", "why", "block", "noise")}
+        outcome.write_text(json.dumps({**limits, "error": error}))
 
 
 if __name__ == "__main__":

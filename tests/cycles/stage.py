@@ -22,11 +22,14 @@ from make_scenes import box_mesh, sphere_mesh, square  # noqa: E402
 WHITE, RED, GREEN, BLUE, BLACK = (1, 1, 1), (1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0, 0)
 TOLERANCE = 0.005
 SAMPLES = 32
+BLOCK = 8
+NOISE = 0.025
 
 
 @dataclass(frozen=True)
 class Scene:
-    """What is compared. `within` is how far a block may be from Cycles' beyond noise, `why` the reason if it is more than usual."""
+    """What is compared. `within` is how far a block may be from Cycles' beyond noise, and `noise` one standard error of it at most: a
+    scene with more has not the power to find a fault. `why` is the reason if either is more than usual."""
 
     name: str  # TOPIC-FUNCTION
     build: Callable[[], None]
@@ -36,6 +39,8 @@ class Scene:
     since: tuple[int, int]  # the first Blender that can make it
     without: tuple[int, int] | None  # one that cannot
     samples: int = SAMPLES  # per pixel, of each seed
+    block: int = BLOCK  # pixels a side
+    noise: float = NOISE
 
 
 SCENES: dict[str, Scene] = {}
@@ -50,18 +55,21 @@ def scene(
     since: tuple[int, int] = (3, 4),
     without: tuple[int, int] | None = None,
     samples: int | None = None,
+    block: int | None = None,
+    noise: float = NOISE,
 ) -> Any:
     """Enters a function that builds into an empty Blender scene; it is named after it and its file. `bounces` are Cycles'; 0: direct light.
-    `samples` are what the topic says in its SAMPLES, if it does."""
+    `samples` and `block` are what the topic says in its SAMPLES and BLOCK, if it does."""
     if function is None:
-        return lambda f: scene(
-            f, bounces=bounces, within=within, why=why, since=since, without=without, samples=samples
-        )
+        given = {"bounces": bounces, "within": within, "why": why, "since": since, "without": without}
+        return lambda f: scene(f, samples=samples, block=block, noise=noise, **given)
     name = f"{function.__module__.rpartition('.')[2]}-{function.__name__}"
     assert name not in SCENES, f"two scenes are called {name}"
     assert within <= TOLERANCE or why, f"{name} may deviate by {within}: why?"
+    assert noise <= NOISE or why, f"{name} may have {noise} of noise: why?"
     samples = samples or function.__globals__.get("SAMPLES", SAMPLES)
-    SCENES[name] = Scene(name, function, bounces, within, why, since, without, samples)
+    block = block or function.__globals__.get("BLOCK", BLOCK)
+    SCENES[name] = Scene(name, function, bounces, within, why, since, without, samples, block, noise)
     return function
 
 

@@ -61,6 +61,7 @@ enter(
         *(surfaces.shader("BsdfDiffuse", Color=surfaces.AMBER, Roughness=r) for r in (0, 0.5, 1)),
         *(sheen(r) for r in (0.1, 0.5, 1)),
     ],
+    samples=192,  # of cloth that shines at grazing angles alone
 )
 for kind in ("GGX", "BECKMANN", *(() if OLD else ("MULTI_GGX",))):
     enter(kind.lower(), [surfaces.glossy(kind, r) for r in ROUGHNESSES])

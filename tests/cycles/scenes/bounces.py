@@ -8,6 +8,8 @@ from typing import Any
 import bpy
 from stage import ball, box, camera, diffuse, floor, lamp, material, mesh, scene, square
 
+SAMPLES = 16  # of many bounces
+
 
 @scene(bounces=4)
 def room():
@@ -61,15 +63,21 @@ def limited(diffuse_bounces: int, glossy_bounces: int) -> None:
     settings = bpy.context.scene
     settings.cycles.diffuse_bounces, settings.cycles.glossy_bounces = diffuse_bounces, glossy_bounces
     settings.wardmis.bounces = "cycles"
-    lamp("AREA", (0.5, 0.5, 5.5), 100, target=(0.3, 0.4, 0), shape="RECTANGLE", size=2, size_y=1)
 
 
-def enter(name: str, build: Callable[[], None]) -> None:
+def enter(name: str, build: Callable[[], None], **more: Any) -> None:
     build.__name__ = name
-    scene(bounces=12)(build)
+    scene(bounces=12, **more)(build)
+
+
+def lit(size: float) -> None:
+    lamp("AREA", (0.3, 0.3, 5.5), 100, target=(0.1, 0.2, 0), shape="RECTANGLE", size=size, size_y=size / 2)
 
 
 for count in (0, 2, 4):
-    enter(f"diffuse_{count}", lambda count=count: (interior(), limited(count, 4)))
+    enter(f"diffuse_{count}", lambda count=count: (interior(), limited(count, 4), lit(2)))
 for count in (0, 1, 4):
-    enter(f"glossy_{count}", lambda count=count: (interior(mirrors=True), limited(2, count)))
+    # a lamp that rays find which a mirror turns towards it
+    enter(
+        f"glossy_{count}", lambda count=count: (interior(mirrors=True), limited(2, count), lit(5)), block=16, samples=24
+    )

@@ -7,6 +7,8 @@ import bpy
 from stage import ball, box, camera, collection, daylight, diffuse, floor, instance, place, scene
 from wardmis import compat
 
+SAMPLES = 16  # of little noise
+
 
 def things():
     floor()

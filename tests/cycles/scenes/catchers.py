@@ -41,7 +41,7 @@ def lamp_of_the_picture_alone():
     lamp("POINT", (-2, -1.5, 3), 60).is_shadow_catcher = False
 
 
-@scene
+@scene(samples=96)
 def seen_by_a_mirror():
     """Other rays meet them as anything else."""
     setting()

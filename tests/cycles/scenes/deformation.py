@@ -7,6 +7,8 @@ import bpy
 import numpy as np
 from stage import ball, box, diffuse, mesh, place, scene, stage
 
+SAMPLES = 16  # of little noise
+
 
 def grid(name="Cloth", divisions=12, size=1.5, of=None):
     steps = np.linspace(-1, 1, divisions + 1)

@@ -120,12 +120,12 @@ def mixed(tree, share, name, **inputs):
     return mix.outputs[0]
 
 
-@scene(bounces=3)
+@scene(bounces=3, samples=64)
 def transparent_behind_a_sheet():
     seen_through(lambda tree: mixed(tree, 0.4, "BsdfDiffuse", Color=(0.7, 0.3, 0.2, 1)))
 
 
-@scene(bounces=3)
+@scene(bounces=3, samples=64)
 def transparent_behind_two_sheets():
     seen_through(
         lambda tree: mixed(tree, 0.4, "BsdfDiffuse", Color=(0.7, 0.3, 0.2, 1)),

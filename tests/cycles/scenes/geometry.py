@@ -27,6 +27,8 @@ from stage import (
     stage,
 )
 
+SAMPLES = 16  # of little noise
+
 MAPS = ("UVMap", "Second", "Third")
 # what has no material is, from 5.0 on, the Principled node as it comes: another model of reflection
 PLAIN: dict[str, Any] = (
@@ -216,9 +218,10 @@ def translucent_upwards():
     bent("Translucent", upwards)
 
 
-@scene(bounces=2)
+@scene(bounces=2, block=16)
 def glass_upwards():
-    bent("Glass", upwards, Roughness=0.3)
+    """Rough enough that the sun's light which it gathers on the floor is no matter of luck."""
+    bent("Glass", upwards, Roughness=0.6)
 
 
 @scene

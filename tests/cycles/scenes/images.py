@@ -826,7 +826,7 @@ def size_limited():
     simplified(saved_image("speckled", speckled(303, 260)))
 
 
-@scene
+@scene(samples=32)
 def size_limited_of_floats():
     """Where they are more than half."""
     simplified(None)

@@ -2,6 +2,7 @@
 """Lamps. A light of one primary colour on white objects has a channel of the image for itself: three are compared in one scene."""
 
 import math
+from typing import Any
 
 import bpy
 from stage import (
@@ -34,6 +35,9 @@ from stage import (
 )
 
 SAMPLES = 64  # of lamps far away and narrow ones
+COARSE: dict[str, Any] = {
+    "block": 16
+}  # where few pixels at the edges of shadows and beams have most of a small block's noise
 
 
 def things():
@@ -43,7 +47,7 @@ def things():
     camera()
 
 
-@scene
+@scene(**COARSE)
 def points():
     things()
     lamp("POINT", (-2, -2, 4), 300, RED)
@@ -51,7 +55,7 @@ def points():
     lamp("POINT", (0.5, 1, 3), 300, BLUE, shadow_soft_size=0.8)
 
 
-@scene
+@scene(**COARSE, samples=128)
 def spots():
     things()
     lamp("SPOT", (-2, -3, 4), 600, RED, spot_size=0.7, spot_blend=0.3)
@@ -66,7 +70,7 @@ def three_suns(*angles):
         lamp("SUN", position, 2, color, angle=angle)
 
 
-@scene
+@scene(**COARSE)
 def suns():
     three_suns(0, 0.1, 1.2)
 
@@ -76,7 +80,7 @@ def wide_suns():
     three_suns(math.radians(90), math.radians(120), math.radians(150))
 
 
-@scene
+@scene(**COARSE)
 def widest_suns():
     three_suns(math.radians(165), math.radians(170), math.radians(179))
 
@@ -89,7 +93,7 @@ def areas():
     lamp("AREA", (0, 2, 3.5), 100, BLUE, shape="SQUARE", size=1.5)
 
 
-@scene
+@scene(**COARSE, samples=128)
 def round_areas():
     things()
     lamp("AREA", (-2, -3, 3), 100, RED, shape="DISK", size=1)
@@ -126,7 +130,7 @@ def sheared_lamps():
     ]
 
 
-@scene
+@scene(**COARSE)
 def sheared():
     things()
     parent = sheared_parent()
@@ -134,13 +138,13 @@ def sheared():
         made.parent = parent
 
 
-@scene
+@scene(**COARSE, samples=128, noise=0.05, why="Cycles 5.2 has rare bright samples of the spot")
 def sheared_instances():
     things()
     instance(collection("Lamps", *sheared_lamps()), (0, 0, 0), (0, 0, 0.5), (0.6, 1.5, 1))
 
 
-@scene
+@scene(**COARSE, samples=128)
 def without_shadow():
     things()
     for made in (
@@ -154,7 +158,7 @@ def without_shadow():
             made.data.use_shadow = False
 
 
-@scene(bounces=3)
+@scene(bounces=3, **COARSE)
 def max_bounces():
     """A lamp that lights first surfaces alone, one that lights two of them, one without limit."""
     things()
@@ -190,7 +194,7 @@ def muted_nodes():
     lamp("POINT", (1, 1, 3), 100, BLUE)
 
 
-@scene
+@scene(**COARSE)
 def falloff():
     """Quadratic falloff is what light does; the others fall off less, or not at all."""
     things()
@@ -222,7 +226,7 @@ def tree_of(obj):
     return obj.data.node_tree
 
 
-@scene
+@scene(**COARSE)
 def projected_patterns():
     """Of each kind of lamp, by the direction of its light as the lamp has it."""
     things()
@@ -236,7 +240,7 @@ def projected_patterns():
         tree.links.new(texture.outputs["Fac"], tree.nodes["Emission"].inputs["Strength"])
 
 
-@scene
+@scene(**COARSE)
 def pattern_on_an_area():
     """By the place on the lamp, and a Fresnel of the angle that it is seen at."""
     things()
@@ -286,23 +290,23 @@ def on_others(output):
         make("SUN", (1, 2, 4), 2, BLUE, angle=0.3)
 
 
-@scene
+@scene(**COARSE)
 def uvs_of_areas():
     """0 before 4.0."""
     on_areas(UVS)
 
 
-@scene
+@scene(**COARSE, samples=128)
 def parametric_of_areas():
     on_areas(PARAMETRIC)
 
 
-@scene
+@scene(**COARSE)
 def uvs_of_others():
     on_others(UVS)
 
 
-@scene
+@scene(**COARSE)
 def parametric_of_others():
     on_others(PARAMETRIC)
 
@@ -389,7 +393,7 @@ def in_their_space():
         tree.links.new(dotted.outputs["Value"], tree.nodes["Emission"].inputs["Strength"])
 
 
-@scene
+@scene(**COARSE, samples=192)
 def light_path():
     """Lamps are looked at for rays of all kinds at once: none of these is known."""
     things()
@@ -433,7 +437,7 @@ def hidden():
     lamp("POINT", (1, 1, 3), 100, (0, 0, 0))
 
 
-@scene(since=(4, 0))
+@scene(since=(4, 0), **COARSE)
 def true_spheres():
     """Without soft falloff a lamp with a radius is a sphere."""
     things()
@@ -467,7 +471,7 @@ def negative():
     lamp("POINT", (2, -3, 3), -60, (0.2, 0.5, 1))
 
 
-@scene
+@scene(**COARSE, samples=128)
 def extremes():
     """A spot as wide as it can be, an area light that is nearly a beam, and a lamp that is larger than what it lights."""
     things()
@@ -487,7 +491,7 @@ def just_behind_a_face():
     lamp("POINT", (0, 1, 4.0002), 100, BLUE)
 
 
-@scene
+@scene(**COARSE, samples=128, noise=0.06, why="Cycles 3.4 finds the part of a beam's lamp that a point sees by chance")
 def narrow_areas():
     """A point sees a part of each alone."""
     things()

@@ -4,6 +4,8 @@
 import bpy
 from stage import ball, box, collection, diffuse, lamp, place, scene, stage
 
+SAMPLES = 16  # of little noise
+
 
 def things():
     """A box and a ball in collections of their own."""

@@ -43,7 +43,7 @@ def ward_rough():
     ward(Diffuse_Color=(0.3, 0.2, 0.1, 1), Specular_Color=(0.3, 0.3, 0.3, 1), Alpha_X=0.3, Alpha_Y=0.3)
 
 
-@scene(within=0.15, why=OTHER_MODEL)
+@scene(within=0.15, why=OTHER_MODEL, samples=128)
 def ward_smooth():
     ward(Diffuse_Color=(0.3, 0.2, 0.1, 1), Specular_Color=(0.3, 0.3, 0.3, 1), Alpha_X=0.05, Alpha_Y=0.05)
 

@@ -51,7 +51,7 @@ def emission():
     above(emitter((1, 0.5, 0.1), -3))
 
 
-@scene(bounces=3)
+@scene(bounces=3, samples=64)
 def emission_and_light():
     """One material that emits and reflects, beside what it takes from."""
     things()

@@ -51,7 +51,7 @@ def furry(of=None, **settings):
     return made
 
 
-@scene
+@scene(samples=64)
 def hair_ribbons():
     sunny()
     shape("RIBBONS")
@@ -155,7 +155,7 @@ def curves_random():
     loops(0.03, told_by_noise("HairInfo"))
 
 
-@scene
+@scene(samples=64)
 def curves_info_of_hair():
     """On what is no hair all is 0."""
     sunny()
@@ -183,7 +183,7 @@ def generated_of_hair():
     furry_ball(painted(generated))
 
 
-@scene
+@scene(samples=64)
 def generated_of_children():
     """Where the emitter has been moved by a modifier, and by what nodes read without a link."""
     furry_ball(

@@ -81,7 +81,7 @@ def image_small():
 
 @scene
 def image_large():
-    image_sky(2048, Rotation=(0, 0, 0.5))
+    image_sky(1024, Rotation=(0, 0, 0.5))
 
 
 @scene
@@ -173,7 +173,7 @@ def mixed_by_light_path():
     by_light_path("Is Camera Ray", plain(0.8, 0.7, 0.6), plain(0.1, 0.2, 0.9))
 
 
-@scene
+@scene(samples=64)
 def image_lights_and_camera_sees_a_color():
     shiny_things()
     by_light_path("Is Camera Ray", textured, plain(0.1, 0.2, 0.9))
@@ -347,7 +347,8 @@ def max_bounces():
     wall = floor()
     wall.location, wall.rotation_euler = (0, 3, 0), (math.pi / 2, 0, 0)
     tree = sky((1, 1, 1))
-    window = np.where(pixels(64, 32) > 2, pixels(64, 32), 0)
+    window = np.zeros((32, 64, 3))
+    window[22:26, 50:54] = 30, 20, 10  # before the wall, and above it
     texture = add(tree, "TexEnvironment", {"image": image("window", window, floats=True), "interpolation": "Closest"})
     tree.links.new(texture.outputs["Color"], tree.nodes["Background"].inputs["Color"])
     bpy.context.scene.world.cycles.max_bounces = 0
