@@ -187,6 +187,12 @@ def bent(kind, bend, **inputs):
     return result
 
 
+def unmoved(made):
+    """Shadows start where the face is: with normals straight across it rounding would tell in Cycles whether it is in the light's way."""
+    owner, offset, _ = compat.shadow_terminator(made)
+    setattr(owner, offset, 0.0)
+
+
 def upwards(n, _):
     return (n + Vector((0, 0, 1.5))).normalized()
 
@@ -213,9 +219,7 @@ def translucent_backwards():
 
 @scene
 def translucent_both_ways():
-    """Not moved: across the face no normal tells of a smooth surface, and in Cycles rounding, of whether the face is in the light's way."""
-    owner, offset, _ = compat.shadow_terminator(bent("Translucent", lambda n, i: n if i % 2 else -n))
-    setattr(owner, offset, 0.0)
+    unmoved(bent("Translucent", lambda n, i: n if i % 2 else -n))
 
 
 @scene(bounces=2)
