@@ -214,7 +214,7 @@ def diffuse_upwards():
 
 @scene
 def translucent_backwards():
-    bent("Translucent", lambda n, i: -n)
+    unmoved(bent("Translucent", lambda n, _: -n))
 
 
 @scene
