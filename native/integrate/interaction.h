@@ -210,8 +210,6 @@ InteractionOf<SurfaceOf<N, K>> interactWith(const Scene& scene, const LobeNumber
   Vec3f ns = ng;
   if (!shape.part->normals.empty()) {
     const Array<Vec3f>& n = shape.part->normals;
-    if (placement.terminator.geometry > 0 && !(n[i[0]] == n[i[1]] && n[i[0]] == n[i[2]]))
-      x.smooth = {placement.terminator.geometry, hit.shape, hit.triangle, hit.u, hit.v};
     // normals stay in the mesh's space, also where positions were moved
     Vec3f own = interpolate(shape.part->normals, i, hit.u, hit.v);
     if (shape.motion != nullptr) [[unlikely]]
@@ -219,6 +217,10 @@ InteractionOf<SurfaceOf<N, K>> interactWith(const Scene& scene, const LobeNumber
     const Vec3f world = placement.toWorld.normal(own);
     const float l2 = dot(world, world);
     if (l2 > 0) ns = world / std::sqrt(l2);
+    constexpr float kFlat = 1 - 1e-6f;
+    if (placement.terminator.geometry > 0 &&
+        !(n[i[0]] == n[i[1]] && n[i[0]] == n[i[2]] && std::abs(dot(ns, ng)) > kFlat))
+      x.smooth = {placement.terminator.geometry, hit.shape, hit.triangle, hit.u, hit.v};
   }
   const bool turned = dot(ng, x.wo) < 0;
   if (turned) ng = -ng, ns = -ns;
