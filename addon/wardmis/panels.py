@@ -141,6 +141,7 @@ class WARDMIS_RENDER_PT_curves(RenderPanel, bpy.types.Panel):
         _row(column, settings.shape == "RIBBONS").prop(settings, "subdivisions", text="Curve Subdivisions")
 
 
+# Cycles' own, of renders
 SIMPLIFIED = {"texture_resolution_render": "Texture Resolution", "texture_limit_render": "Texture Limit"}
 
 
@@ -158,9 +159,10 @@ class WARDMIS_RENDER_PT_simplify(RenderPanel, bpy.types.Panel):
             group = column.column(heading=heading)
             group.prop(render, f"simplify_subdivision{suffix}", text=f"{heading} Max Subdivision")
             group.prop(render, f"simplify_child_particles{suffix}", text="Child Particles")
-        for name in ("texture_resolution_render", "texture_limit_render"):  # of renders
-            if hasattr(getattr(context.scene, "cycles", None), name):
-                group.prop(context.scene.cycles, name, text=SIMPLIFIED[name])
+        cycles = getattr(context.scene, "cycles", None)
+        for name, text in SIMPLIFIED.items():
+            if hasattr(cycles, name):
+                group.prop(cycles, name, text=text)
 
 
 class WARDMIS_RENDER_PT_motion_blur(RenderPanel, bpy.types.Panel):
