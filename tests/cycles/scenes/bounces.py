@@ -11,7 +11,7 @@ from stage import ball, box, camera, diffuse, floor, lamp, material, mesh, scene
 SAMPLES = 16  # of many bounces
 
 
-@scene(bounces=4)
+@scene(bounces=4, samples=24)
 def room():
     """Walls of two colours, one area light: five surface hits."""
     floor()
