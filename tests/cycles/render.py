@@ -18,7 +18,7 @@ import bpy
 
 sys.path[:0] = [str(Path(__file__).resolve().parent)]
 
-import scenes  # noqa: E402, F401
+import scenes  # noqa: E402
 from stage import SCENES, Scene  # noqa: E402
 from wardmis import compat  # noqa: E402
 
@@ -79,10 +79,21 @@ def render_scene(entry: Scene, folder: Path, first_seed: int) -> None:
 
 
 def chosen(entry: Scene, pattern: str) -> bool:
+    """By a part of the name, or the whole one after '='; 'all': each; '': a sample."""
+    if pattern in {"", "all"}:
+        return pattern == "all" or not entry.seldom
     return entry.name == pattern[1:] if pattern.startswith("=") else pattern in entry.name
 
 
+def check_seldom() -> None:
+    """That what topics name as SELDOM is there."""
+    for topic, module in vars(scenes).items():
+        for name in getattr(module, "SELDOM", ()):
+            assert f"{topic}-{name}" in SCENES, f"{topic} has no scene {name}, which its SELDOM names"
+
+
 def main() -> None:
+    check_seldom()
     folder, first_seed, part, parts, *pattern = sys.argv[sys.argv.index("--") + 1 :]
     wanted = [s for s in SCENES.values() if chosen(s, *pattern or [""])]
     version = bpy.app.version[:2]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Small scenes against Cycles, block by block: `./dev test cycles [PATTERN]` takes those whose name has PATTERN in it.
+"""Small scenes against Cycles, block by block: `./dev test cycles` takes a sample of them, `./dev test cycles all` each, and
+`./dev test cycles PATTERN` those whose name has PATTERN in it.
 
 `./dev test cycles parity` compares nodes alone, output by output. Writes the table of what was compared to build/cycles/VERSION.md and .json, the images beside it, and closes with 'N passed, N failed'.
 A scene that deviates is rendered again with other seeds, and fails when a block does so both times, to the same side. One in
@@ -140,7 +141,7 @@ def main(pattern: str) -> int:
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     parts = int(os.environ.get("WARDMIS_JOBS") or os.cpu_count() or 1)
-    nodes_too = pattern in "parity"  # also where all is wanted
+    nodes_too = pattern in {"", "all"} or pattern in "parity"
     with ThreadPoolExecutor(parts + 1) as pool:
         nodes = pool.submit(parity, folder) if nodes_too else None
         list(pool.map(lambda part: render(folder, 0, pattern, part, parts), range(parts)))

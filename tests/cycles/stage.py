@@ -41,6 +41,7 @@ class Scene:
     samples: int = SAMPLES  # per pixel, of each seed
     block: int = BLOCK  # pixels a side
     noise: float = NOISE
+    seldom: bool = False  # others show nearly the same: left out where a sample is enough
 
 
 SCENES: dict[str, Scene] = {}
@@ -59,7 +60,7 @@ def scene(
     noise: float = NOISE,
 ) -> Any:
     """Enters a function that builds into an empty Blender scene; it is named after it and its file. `bounces` are Cycles'; 0: direct light.
-    `samples` and `block` are what the topic says in its SAMPLES and BLOCK, if it does."""
+    `samples` and `block` are what the topic says in its SAMPLES and BLOCK, if it does; its SELDOM names the scenes that a sample leaves out."""
     if function is None:
         given = {"bounces": bounces, "within": within, "why": why, "since": since, "without": without}
         return lambda f: scene(f, samples=samples, block=block, noise=noise, **given)
@@ -69,7 +70,8 @@ def scene(
     assert noise <= NOISE or why, f"{name} may have {noise} of noise: why?"
     samples = samples or function.__globals__.get("SAMPLES", SAMPLES)
     block = block or function.__globals__.get("BLOCK", BLOCK)
-    SCENES[name] = Scene(name, function, bounces, within, why, since, without, samples, block, noise)
+    seldom = function.__name__ in function.__globals__.get("SELDOM", ())
+    SCENES[name] = Scene(name, function, bounces, within, why, since, without, samples, block, noise, seldom)
     return function
 
 

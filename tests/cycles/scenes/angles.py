@@ -15,6 +15,7 @@ DEGREES = (0, 20, 40, 55, 68, 78, 85, 89)
 ROUGHNESSES = (0, 0.1, 0.25, 0.5, 0.75, 1)
 OLD = compat.CYCLES == 3
 SAMPLES = 16
+SELDOM = {"matte_structured"}
 
 
 def on_planes(rows):

@@ -21,6 +21,13 @@ from stage import (
 
 from scenes.instances import geometry_nodes, particles
 
+SELDOM = {
+    "edge_booleans",
+    "edge_bytes",
+    "edge_integers",
+    "edge_vectors",
+}
+
 
 def read(name, output="Vector", kind="GEOMETRY"):
     """How far its values are from 0."""

@@ -9,6 +9,10 @@ import bpy
 from stage import ball, box, camera, diffuse, floor, lamp, material, mesh, scene, square
 
 SAMPLES = 16  # of many bounces
+SELDOM = {
+    "diffuse_2",
+    "glossy_1",
+}
 
 
 @scene(bounces=4, samples=24)

@@ -8,6 +8,12 @@ from stage import ball, box, camera, collection, daylight, diffuse, floor, insta
 from wardmis import compat
 
 SAMPLES = 16  # of little noise
+SELDOM = {
+    "border_uncropped",
+    "fisheye_equisolid",
+    "mirror_ball_lens",
+    "orthographic_lens",
+}
 
 
 def things():

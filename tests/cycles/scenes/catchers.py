@@ -4,6 +4,11 @@
 import bpy
 from stage import add, ball, box, camera, diffuse, floor, lamp, material, mesh, scene, sky, square
 
+SELDOM = {
+    "transparent",
+    "two",
+}
+
 
 def setting(transparent: bool = True):
     """Things on a floor that catches; returns the floor."""

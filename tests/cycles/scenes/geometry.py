@@ -29,6 +29,10 @@ from stage import (
 from wardmis import compat
 
 SAMPLES = 16  # of little noise
+SELDOM = {
+    "auto_smooth_two_maps",
+    "edit_mode_duplicate",
+}
 
 MAPS = ("UVMap", "Second", "Third")
 # what has no material is, from 5.0 on, the Principled node as it comes: another model of reflection

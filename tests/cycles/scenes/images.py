@@ -10,6 +10,24 @@ from stage import add, checker, diffuse, face_on, feed, gradient, image, materia
 from wardmis import compat
 
 SAMPLES = 16  # of next to no noise
+SELDOM = {
+    "alpha_exr_packed_in_all_modes",
+    "alpha_mixed_by_nothing_and_clamped",
+    "alpha_of_a_like_node",
+    "alpha_of_an_unlike_node",
+    "alpha_tga",
+    "alpha_tga_packed",
+    "alpha_tiff_16_bits",
+    "alpha_tiff_16_bits_of_multiplied",
+    "alpha_tiff_of_multiplied",
+    "alpha_times_one",
+    "alpha_times_zero",
+    "alpha_to_another_renderer",
+    "alpha_to_no_node",
+    "packed_premultiplied_16_bits",
+    "packed_premultiplied_alpha",
+    "packed_straight_16_bits",
+}
 CORNERS = checker((0.9, 0.1, 0.1), (0.1, 0.8, 0.2), (0.1, 0.2, 0.9), (0.8, 0.8, 0.1))
 
 

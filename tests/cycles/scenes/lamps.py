@@ -35,6 +35,18 @@ from stage import (
 )
 
 SAMPLES = 64  # of lamps far away and narrow ones
+SELDOM = {
+    "ies_without_file",
+    "of_no_surface",
+    "parametric_of_areas",
+    "parametric_of_others",
+    "projected_patterns",
+    "round_areas",
+    "sheared_instances",
+    "smoothed_falloff",
+    "uvs_of_areas",
+    "uvs_of_others",
+}
 COARSE: dict[str, Any] = {
     "block": 16
 }  # where few pixels at the edges of shadows and beams have most of a small block's noise

@@ -5,6 +5,12 @@ import bpy
 from stage import ball, box, camera, collection, daylight, diffuse, emitter, floor, instance, lamp, scene, sky, sun
 from wardmis import compat
 
+SELDOM = {
+    "shutter_at_the_end",
+    "shutter_at_the_start",
+    "steps",
+}
+
 FRAME = 10
 
 

@@ -24,6 +24,11 @@ from stage import (
 
 from scenes.instances import geometry_nodes, particles
 
+SELDOM = {
+    "generated_of_children",
+    "generated_of_thick_curves",
+}
+
 
 def shape(kind, subdivisions=2):
     bpy.context.scene.cycles_curves.shape, bpy.context.scene.cycles_curves.subdivisions = kind, subdivisions

@@ -9,6 +9,16 @@ from wardmis import compat
 
 COLUMNS, ROWS = 4, 3
 SAMPLES, BLOCK = 24, 16  # a block is a ball's place in the image
+SELDOM = {
+    "principled_at_random_1",
+    "principled_at_random_2",
+    "principled_at_random_3",
+    "principled_at_random_4",
+    "principled_left",
+    "principled_multiple",
+    "rough_glass_multiple",
+    "rough_refraction",
+}
 BOUNCES = 6
 OLD = compat.CYCLES == 3
 GLOSSY = "BsdfGlossy" if OLD else "BsdfAnisotropic"

@@ -90,7 +90,7 @@ def translucent() -> Any:
     return made
 
 
-@scene(samples=256)
+@scene(samples=128)
 def of_other_surfaces():
     """Glossy ones and translucent ones, in the light and before it."""
     stand()

@@ -10,6 +10,13 @@ from stage import add, ball, camera, diffuse, floor, lamp, material, mesh, scene
 
 from scenes.worlds import image_sky
 
+SELDOM = {
+    "behind_1_of_0",
+    "behind_1_of_2",
+    "behind_2_of_0",
+    "behind_3_of_2",
+}
+
 KINDS: dict[str, dict[str, Any]] = {
     "Refraction": {"IOR": 1.2, "Roughness": 0.0},
     "Glass": {"IOR": 1.3, "Roughness": 0.3},

@@ -24,6 +24,16 @@ from stage import (
     with_properties,
 )
 
+SELDOM = {
+    "sky_atmosphere_oblique",
+    "sky_hosek_wilkie",
+    "sky_of_two",
+    "sky_preetham_oblique",
+    "sky_with_a_sun_at_the_horizon",
+    "sky_with_a_sun_oblique",
+    "sky_with_a_sun_past_the_zenith",
+}
+
 
 def things():
     floor()
