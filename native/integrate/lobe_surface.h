@@ -242,23 +242,25 @@ class LobeSurface {
     return l.frame == 0 && detail::isDiffuse(l.kind) && !wardmis::transmits(l.kind);
   }
 
-  // What a lobe sends to the view of light from all around: of rough facets in mean over what they are turned by.
-  Rgb albedoOf(const Lobe& l) const {
+  // What facets that are met at a cosine send to the view.
+  static Rgb albedoAt(const Lobe& l, float cosine) {
     const bool refracts = l.kind == LobeKind::kSharpRefraction || l.kind == LobeKind::kGgxRefraction ||
                           l.kind == LobeKind::kBeckmannRefraction;
-    const float c = cosine(l.frame), spread = isDelta(l.kind) ? 0 : std::sqrt(l.ax * l.ay);
-    const auto at = [&](float x) {
-      const float clamped = std::clamp(x, 0.0f, 1.0f);
-      const Rgb all = l.weight * (refracts ? transmittance(l, clamped) : reflectance(l, clamped));
-      return isGlass(l.kind) ? all + l.through * transmittance(l, clamped) : all;
-    };
-    return spread > 0 ? (at(c - spread) + at(c) + at(c + spread)) / 3.0f : at(c);
+    const float c = std::clamp(cosine, 0.0f, 1.0f);
+    const Rgb all = l.weight * (refracts ? transmittance(l, c) : reflectance(l, c));
+    return isGlass(l.kind) ? all + l.through * transmittance(l, c) : all;
   }
-  // Never so little that its light would be rare and bright.
+  // What a lobe sends to the view of light from all around: of rough facets in mean over what they are turned by.
+  Rgb albedoOf(const Lobe& l) const {
+    const float c = cosine(l.frame), spread = isDelta(l.kind) ? 0 : std::sqrt(l.ax * l.ay);
+    return spread > 0 ? (albedoAt(l, c - spread) + albedoAt(l, c) + albedoAt(l, c + spread)) / 3.0f : albedoAt(l, c);
+  }
+  // By facets along the normal, as Cycles weighs closures: how often each is drawn tells which limit of bounces ends
+  // paths. Never so little that its light would be rare and bright.
   float strengthOf(const Lobe& l) const {
     const float most = luminance(isGlass(l.kind) ? l.weight + l.through : l.weight),
                 least = isDelta(l.kind) ? 0 : 0.05f * most;
-    return std::clamp(luminance(albedoOf(l)), least, most);
+    return std::clamp(luminance(albedoAt(l, cosine(l.frame))), least, most);
   }
 
   template <class T>

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import bpy
-from stage import ball, box, camera, diffuse, floor, lamp, material, mesh, scene, square
+from stage import add, ball, box, camera, diffuse, floor, lamp, material, mesh, scene, square
 
 SAMPLES = 16  # of many bounces
 SELDOM = {
@@ -44,7 +44,15 @@ def mirror() -> Any:
     return made
 
 
-def interior(mirrors: bool = False) -> None:
+def dull(color: Any) -> Any:
+    """What walls of a new file are made of: rough gloss over something diffuse."""
+    made, tree, output = material()
+    node = add(tree, "BsdfPrincipled", Base_Color=(*color, 1), Roughness=0.9)
+    tree.links.new(node.outputs[0], output.inputs["Surface"])
+    return made
+
+
+def interior(mirrors: bool = False, of: Callable[[Any], Any] = diffuse) -> None:
     """A closed room of bright walls, most of whose light comes by many bounces. `mirrors`: two walls that face each other."""
     grey = (0.9, 0.9, 0.9)
     for color, location, rotation in (
@@ -56,7 +64,7 @@ def interior(mirrors: bool = False) -> None:
         (grey, (0, 0, 6), (math.pi, 0, 0)),
     ):
         shows = mirrors and location[0] != 0
-        wall = mesh("Wall", *square(6), mirror() if shows else diffuse(color))
+        wall = mesh("Wall", *square(6), mirror() if shows else of(color))
         wall.location, wall.rotation_euler = location, rotation
     box(location=(1, 1, 1), scale=(0.7, 0.7, 1))
     camera((-1.5, -2.6, 3.4), (1.2, 2, 1.5), lens=28)
@@ -85,3 +93,5 @@ for count in (0, 1, 4):
     enter(
         f"glossy_{count}", lambda count=count: (interior(mirrors=True), limited(2, count), lit(5)), block=16, samples=24
     )
+
+enter("of_two_lobes", lambda: (interior(of=dull), limited(4, 4), lit(2)))
