@@ -94,4 +94,9 @@ for count in (0, 1, 4):
         f"glossy_{count}", lambda count=count: (interior(mirrors=True), limited(2, count), lit(5)), block=16, samples=24
     )
 
-enter("of_two_lobes", lambda: (interior(of=dull), limited(4, 4), lit(2)))
+enter(
+    "of_two_lobes",
+    lambda: (interior(of=dull), limited(4, 4), lit(2)),
+    within=0.04,
+    why="at the first hit each limit cuts the light of its own lobe, in Cycles of the one that was drawn",
+)
