@@ -16,6 +16,9 @@ SELDOM = {
     "principled_at_random_4",
     "principled_left",
     "principled_multiple",
+    "principled_single",
+    "several_lobes",
+    "tangents",
     "rough_glass_multiple",
     "rough_refraction",
 }

@@ -29,6 +29,7 @@ SELDOM = {
     "sky_hosek_wilkie",
     "sky_of_two",
     "sky_preetham_oblique",
+    "sky_with_the_smallest_sun",
     "sky_with_a_sun_at_the_horizon",
     "sky_with_a_sun_oblique",
     "sky_with_a_sun_past_the_zenith",
