@@ -1,23 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "integrate/terminator.h"
 
+#include "integrate/interaction.h"
+#include "program/arithmetic.h"
+
 namespace wardmis {
-namespace {
-
-Vec3f unit(Vec3f v) {
-  const float l2 = dot(v, v);
-  return l2 > 0 ? v / std::sqrt(l2) : v;
-}
-
-// Of a vertex, in the mesh's space.
-Vec3f normalOf(const Shape& s, uint32_t vertex, float time) {
-  const auto& steps = s.part->movedNormals;
-  if (steps.empty()) return s.part->normals[vertex];
-  const auto [first, t] = stepAt(steps.size(), time);
-  return steps[first][vertex] * (1 - t) + steps[first + 1][vertex] * t;
-}
-
-}  // namespace
 
 Vec3f shadowOffset(const Geometry& geometry, const Placement& placement, const SmoothFace& face, Vec3f side,
                    float time) {
@@ -26,8 +13,8 @@ Vec3f shadowOffset(const Geometry& geometry, const Placement& placement, const S
   const Corners p = cornersOf(shape, face.triangle, time);
   std::array<Vec3f, 3> n;  // where the corners are
   for (size_t k = 0; k < 3; ++k) {
-    const Vec3f own = normalOf(shape, i[k], time);
-    n[k] = unit(placement.flat ? placement.toWorld.normal(own) : own);
+    const Vec3f own = detail::movedNormal(shape, i, k == 1 ? 1 : 0, k == 2 ? 1 : 0, time);
+    n[k] = safeNormalize(placement.flat ? placement.toWorld.normal(own) : own);
   }
   const float u = 1 - face.u - face.v, v = face.u, w = face.v;
   const Vec3f at = p[0] * u + p[1] * v + p[2] * w, mean = n[0] * u + n[1] * v + n[2] * w;
