@@ -134,10 +134,38 @@ class Images(unittest.TestCase):
         self.assertIn("is not supported", Picture(image).deviations()[0])
         self.assertEqual(export_image(Picture(image)).color_space, "sRGB")
 
-    def test_movies_are_noted(self):
+    def test_movie_that_cannot_be_read_is_named_and_magenta(self):
+        path = os.path.join(self.folder.name, "film.avi")
         image = self.generated(is_float=False)
-        image.source = "MOVIE"
-        self.assertIn("movies", Picture(image).deviations()[0])
+        image.source, image.filepath = "MOVIE", path
+        user = SimpleNamespace(frame_start=1, frame_offset=0, frame_duration=1, use_cyclic=False)
+        picture = picture_of(image, False, user, 1)
+        self.assertIn(f"its file '{path}' is missing", picture.missing())
+        with open(path, "wb") as file:
+            file.write(bytes(1000))
+        self.assertIn(f"cannot be read from '{path}'", picture.missing())
+        np.testing.assert_array_equal(export_image(picture).pixels, [[[1, 0, 1]]])
+
+    def test_pixels_of_other_files_are_read_in_data_of_their_own(self):
+        """Where the renderer cannot, and Blender holds those of another one."""
+        first, _ = self.file("TIFF")
+        second = np.array([[[9, 8, 7, 255], [6, 5, 4, 255]]], np.uint8)
+        made = self.generated(is_float=False)
+        made.pixels.foreach_set(second.ravel() / np.float32(255))
+        for name in ("t.1002.tif", "s.0007.tif"):
+            made.filepath_raw, made.file_format = os.path.join(self.folder.name, name), "TIFF"
+            made.save()
+        there = len(bpy.data.images), len(bpy.data.textures)
+        first.filepath, first.source = os.path.join(self.folder.name, "s.0001.tif"), "SEQUENCE"
+        picture = Picture(first, frame=7)
+        self.assertEqual((picture.missing(), picture.deviations()), (None, []))
+        np.testing.assert_array_equal(export_image(picture).pixels, second)
+        first.source, first.filepath = "TILED", os.path.join(self.folder.name, "t.<UDIM>.tif")
+        first.tiles.new(1002)
+        picture = Picture(first, tile=1002)
+        self.assertEqual((picture.missing(), picture.deviations()), (None, []))
+        np.testing.assert_array_equal(export_image(picture).pixels, second)
+        self.assertEqual((len(bpy.data.images), len(bpy.data.textures)), there)
 
     def test_tiles_beyond_the_first_are_files(self):
         """Of which Blender tells no pixels."""

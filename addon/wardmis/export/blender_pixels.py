@@ -51,15 +51,19 @@ def as_in_the_file(image: Any, pixels: np.ndarray, encoded: bool) -> np.ndarray:
     return np.concatenate([colors, pixels[..., 3:]], axis=-1).astype(np.float32)
 
 
-def is_cut_off(image: Any) -> bool:
+def is_cut_off(image: Any, pixels: np.ndarray) -> bool:
     """Whether Blender may have lost bytes that are said to be multiplied by alpha and are not.
 
     It shows where alpha is 0 and the colour is not, and where the divided colour is as large as it can be: so is one that was cut off.
     White that is multiplied is, too: the two cannot be told apart.
     """
-    if image.alpha_mode != "PREMUL" or not alpha_affects_colors(image) or image.is_float or image.channels < 4:
+    if (
+        image.alpha_mode != "PREMUL"
+        or not alpha_affects_colors(image)
+        or pixels.dtype != np.uint8
+        or pixels.shape[-1] < 4
+    ):
         return False
-    pixels = blender_pixels(image)
     most, alpha = pixels[..., :3].max(axis=-1), pixels[..., 3]
     return bool(((alpha == 0) & (most > 0) | (alpha > 0) & (alpha < 255) & (most == 255)).any())
 

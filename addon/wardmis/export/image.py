@@ -6,6 +6,7 @@ from __future__ import annotations
 import os
 import re
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import bpy
@@ -13,6 +14,7 @@ import numpy as np
 
 from .. import compat
 from .blender_pixels import alpha_affects_colors, as_in_the_file, blender_pixels, is_cut_off
+from .elsewhere import pixels_elsewhere
 from .file_alpha import file_alpha
 from .model import FileOnDisk, ImageData, Rgb
 from .simplify import FULL_SIZE, Shrinking
@@ -28,6 +30,7 @@ SIGNATURES = (
 )
 EXR_BEGINS = SIGNATURES[2][0]
 COLOR_SPACES = {"sRGB": "sRGB", "Linear": "linear", "Linear Rec.709": "linear", "Non-Color": "linear", "Raw": "linear"}
+COLOR_SPACES[""] = "sRGB"  # of a movie that Blender has not looked at
 
 
 @dataclass(frozen=True)
@@ -44,7 +47,7 @@ class Pixels:
 
 @dataclass(frozen=True)
 class Picture:
-    """What an image node shows of an image, as Cycles does: which picture of a sequence, and what alpha does to the colours.
+    """What an image node shows of an image, as Cycles does: which picture of a sequence or movie, and what alpha does to the colours.
 
     `alpha`: the colours are "kept" as they are stored, or "multiplied" by it; or it is "ignored", and 1. `divided`: the colours are
     divided by it after they are filtered.
@@ -53,7 +56,7 @@ class Picture:
     image: Any
     alpha: str = "kept"
     divided: bool = False
-    frame: int | None = None  # of a sequence
+    frame: int | None = None  # of a sequence or a movie
     tile: int | None = None  # of UDIM; None: the first
 
     @property
@@ -68,7 +71,7 @@ class Picture:
     @property
     def is_encoded(self) -> bool:
         """Whether it is kept and filtered as sRGB. Blender has made floats linear, which Cycles does not see where it reads the file."""
-        if self.image.is_float:
+        if self._is_float:
             return self.image.colorspace_settings.name == "sRGB" and self._is_read_by_cycles
         return self._space == "sRGB"
 
@@ -82,7 +85,9 @@ class Picture:
         if self.image.source == "TILED":
             path = path_of_tile(path, self.image.tiles[0].number, self._tile)
         path = bpy.path.abspath(path, library=self.image.library)
-        return str(path) if self.frame is None else path_of_frame(path, self.frame)
+        return (
+            path_of_frame(path, self.frame) if self.image.source == "SEQUENCE" and self.frame is not None else str(path)
+        )
 
     @property
     def _tile(self) -> int:
@@ -92,6 +97,27 @@ class Picture:
     def _is_later_tile(self) -> bool:
         """Whether Blender does not give its pixels: it does of the first tile alone."""
         return self.image.source == "TILED" and self._tile != self.image.tiles[0].number
+
+    @property
+    def _is_elsewhere(self) -> bool:
+        """Whether its pixels, where they are wanted, are others than those that Blender holds."""
+        return not self.image.is_dirty and (self.frame is not None or self._is_later_tile)
+
+    @cached_property
+    def _elsewhere(self) -> np.ndarray | None:
+        return pixels_elsewhere(self.image, self.path, self.frame if self.image.source == "MOVIE" else None)
+
+    @property
+    def _pixels(self) -> np.ndarray:
+        return (
+            blender_pixels(self.image) if not self._is_elsewhere or self._elsewhere is None else self._elsewhere.copy()
+        )
+
+    @property
+    def _is_float(self) -> bool:
+        if self._is_elsewhere and not self.mime_type:
+            return self._elsewhere is not None and self._elsewhere.dtype != np.uint8
+        return bool(self.image.is_float)
 
     @property
     def mime_type(self) -> str:
@@ -129,7 +155,7 @@ class Picture:
             return False
         if compat.ALPHA_MODES_ARE_TRUSTED:
             return bool(self.image.alpha_mode == "STRAIGHT")
-        return of_file.is_straight if of_file is not None else not self.image.is_float
+        return of_file.is_straight if of_file is not None else not self._is_float
 
     def export(self) -> ImageData:
         """A missing one becomes a magenta texel."""
@@ -162,42 +188,34 @@ class Picture:
         if image.source == "VIEWER":
             return "a render or viewer result cannot be read as a texture; save it as a file"
         path = self.path
-        if image.source in {"FILE", "SEQUENCE"} and not image.is_dirty and not image.packed_files:
+        if image.source in {"FILE", "SEQUENCE", "MOVIE"} and not image.is_dirty and not image.packed_files:
             if not os.path.isfile(path):
                 kind = (
                     "a folder" if os.path.isdir(path) else "a device or a pipe" if os.path.exists(path) else "missing"
                 )
                 return f"its file '{path}' is {kind}"
-            if self.frame is not None and self.mime_type:
-                return None  # Blender may not have looked at it
-        if self._is_later_tile:
-            if self.mime_type:
-                return None
+        elif self._is_later_tile and not self.mime_type:
             if image.is_dirty or not image.filepath:
                 return f"its tile {self._tile} is no file; save the image"
-            kind = "no PNG, JPEG or EXR file" if os.path.isfile(path) else "missing"
-            return f"'{path}' of its tile {self._tile} is {kind}"
-        if 0 in image.size:  # Blender has tried: a damaged file, too, is better found here than by the renderer
-            return f"it cannot be read from '{path}'"
-        return None
+            if not os.path.isfile(path):
+                return f"'{path}' of its tile {self._tile} is missing"
+        if self._is_elsewhere:
+            can_be_read = bool(self.mime_type) or self._elsewhere is not None
+        else:
+            can_be_read = 0 not in image.size  # a damaged file, too, is better found here than by the renderer
+        return None if can_be_read else f"it cannot be read from '{path}'"
 
     def deviations(self) -> list[str]:
         """What is rendered other than Blender shows it, naming the image."""
         found = []
         image = self.image
         space = image.colorspace_settings.name
-        if space not in COLOR_SPACES and not image.is_float:
+        if space not in COLOR_SPACES and not self._is_float:
             found.append(f"colour space '{space}' is not supported; its colours are read as sRGB")
-        if not self.mime_type and self._is_read_by_cycles and is_cut_off(image):
+        if not self.mime_type and self._is_read_by_cycles and is_cut_off(image, self._pixels):
             found.append(
                 "it is said to be Premultiplied, and it seems that its colours are not multiplied by alpha: Blender cuts those off that "
                 "are above it, and they become darker; set its alpha to what the file has, or save it as PNG"
-            )
-        if image.source == "MOVIE":
-            found.append("movies are not supported; the picture that Blender holds now is used")
-        if image.source == "SEQUENCE" and not self.mime_type:
-            found.append(
-                "a sequence of files other than PNG, JPEG or EXR is not supported; the picture that Blender holds now is used"
             )
         return [f"image '{image.name}': {deviation}" for deviation in found]
 
@@ -220,7 +238,7 @@ class Picture:
 
     def _stored(self) -> np.ndarray:
         """(height, width, channels) uint8, or float32 where the image is one: sRGB if `is_encoded`, else linear."""
-        pixels = blender_pixels(self.image)
+        pixels = self._pixels
         if self._is_read_by_cycles:
             pixels = as_in_the_file(self.image, pixels, self.is_encoded)
         if pixels.shape[-1] < 4 or self.alpha == "kept":
@@ -239,7 +257,7 @@ def picture_of(image: Any, shows_alpha: bool, user: Any, scene_frame: int) -> Pi
 
     Cycles multiplies colours by alpha where the file has not done so, and divides them again where the alpha is used.
     """
-    plain = Picture(image, frame=frame_of(user, scene_frame) if image.source == "SEQUENCE" else None)
+    plain = Picture(image, frame=frame_of(user, scene_frame) if image.source in {"SEQUENCE", "MOVIE"} else None)
     alpha = "ignored" if image.alpha_mode == "NONE" else "multiplied" if plain.is_to_be_multiplied else "kept"
     return replace(plain, alpha=alpha, divided=alpha_affects_colors(image) and shows_alpha)
 

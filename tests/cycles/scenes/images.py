@@ -31,14 +31,16 @@ SELDOM = {
 CORNERS = checker((0.9, 0.1, 0.1), (0.1, 0.8, 0.2), (0.1, 0.2, 0.9), (0.8, 0.8, 0.1))
 
 
-def shows(picture, settings=None, output="Color", mapping=None):
-    """A sheet with this image, seen from above."""
+def shows(picture, settings=None, output="Color", mapping=None, user=None):
+    """A sheet with this image, seen from above. `user`: settings of which frame it is."""
     face_on()
-    sheet(painted(lambda tree: texture(tree, picture, settings, mapping).outputs[output]))
+    sheet(painted(lambda tree: texture(tree, picture, settings, mapping, user).outputs[output]))
 
 
-def texture(tree, picture, settings=None, mapping=None):
+def texture(tree, picture, settings=None, mapping=None, user=None):
     node = add(tree, "TexImage", {"image": picture, **(settings or {})})
+    for name, value in (user or {}).items():
+        setattr(node.image_user, name, value)
     vector = add(tree, "TexCoord").outputs["UV"]
     if mapping is not None:
         kind, inputs = mapping
@@ -468,6 +470,90 @@ def sequence():
         return node.outputs["Color"]
 
     sheet(painted(build))
+
+
+@scene
+def sequence_of_tga():
+    """Files that the renderer does not read; Blender holds the pixels of another frame."""
+    for frame in (1, 2, 3):
+        bpy.data.images.remove(saved_image(f"tga_{frame:04d}", gradient() * frame / 3, "tga"))
+    picture = bpy.data.images.load(f"{bpy.app.tempdir}/tga_0001.tga")
+    picture.source = "SEQUENCE"
+    shows(picture, user={"frame_duration": 3, "frame_offset": 1})
+
+
+def filmed(name, pictures, **settings):
+    """A movie without losses of these pictures, a frame each; in a scene of its own, by Blender's sequencer."""
+    stage = bpy.context.scene
+    film = bpy.data.scenes.new("Film")
+    height, width = pictures[0].shape[:2]
+    film.render.resolution_x, film.render.resolution_y, film.render.resolution_percentage = width, height, 100
+    film.frame_start, film.frame_end, film.render.use_sequencer = 1, len(pictures), True
+    film.view_settings.view_transform, film.render.engine = "Standard", "CYCLES"
+    output, path = film.render.image_settings, f"{bpy.app.tempdir}/{name}.mkv"
+    if hasattr(output, "media_type"):
+        output.media_type = "VIDEO"
+    output.file_format = "FFMPEG"
+    film.render.ffmpeg.format, film.render.ffmpeg.codec = "MKV", "FFV1"
+    for key, value in settings.items():
+        setattr(output, key, value)
+    film.render.use_file_extension, film.render.filepath = False, path
+    editor = film.sequence_editor_create()
+    strips = editor.strips if hasattr(editor, "strips") else editor.sequences
+    for frame, pixels in enumerate(pictures, 1):
+        still = saved_image(f"{name}-{frame}", pixels)
+        strips.new_image(f"{frame}", bpy.path.abspath(still.filepath), channel=1, frame_start=frame)
+        bpy.data.images.remove(still)
+    bpy.ops.render.render(animation=True, scene=film.name)
+    bpy.data.scenes.remove(film)
+    bpy.context.window.scene = stage
+    return bpy.data.images.load(path)
+
+
+def steps(alpha=None):
+    """Four pictures of 32 x 16 pixels."""
+    pixels = np.repeat(np.repeat(gradient(), 2, axis=0), 4, axis=1)
+    if alpha is not None:
+        pixels = np.concatenate([pixels, np.full((16, 32, 1), alpha)], axis=-1)
+    return [pixels * (0.4 + 0.2 * k) ** np.array([1, 2, 1, 1])[: pixels.shape[-1]] for k in range(4)]
+
+
+@scene
+def movie():
+    """The second picture, of which Blender holds none: nobody has looked at the movie."""
+    bpy.context.scene.frame_set(7)
+    user = {"frame_start": 4, "frame_duration": 3, "frame_offset": -1, "use_auto_refresh": True}
+    shows(filmed("film", steps()), user=user)
+
+
+@scene
+def movie_again_and_again():
+    """The second picture, after five times three; the values are no colours."""
+    bpy.context.scene.frame_set(17)
+    picture = filmed("again", steps())
+    picture.colorspace_settings.name = "Non-Color"
+    shows(picture, user={"frame_duration": 3, "use_cyclic": True})
+
+
+@scene
+def movie_with_alpha():
+    """The last picture, beyond which there is none."""
+    bpy.context.scene.frame_set(9)
+    shows(filmed("through", steps(0.5), color_mode="RGBA"), user={"frame_duration": 9})
+
+
+@scene
+def movie_as_a_sky():
+    """Blender's user of an environment counts as that of an image does."""
+    bpy.context.scene.frame_set(2)
+    picture = filmed("sky", steps())
+    face_on()
+    tree = bpy.context.scene.world.node_tree
+    node = add(tree, "TexEnvironment", {"image": picture})
+    node.image_user.frame_duration = 4
+    background = next(n for n in tree.nodes if n.bl_idname == "ShaderNodeBackground")
+    tree.links.new(node.outputs[0], background.inputs[0])
+    sheet(diffuse())
 
 
 @scene
