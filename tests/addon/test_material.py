@@ -237,6 +237,14 @@ class NotUnderstood(MaterialCase):
                 expected = f"material 'M' on object 'O': node 'Odd one' ({node.bl_label}) is not supported; rendered as {rendered}"
                 self.assertIn(expected, self.context.notes)
 
+    def test_what_has_but_a_volume_is_air_and_named(self):
+        volume = self.node("ShaderNodeVolumeScatter")
+        output = next(node for node in self.tree.nodes if node.bl_idname == "ShaderNodeOutputMaterial")
+        self.tree.links.new(volume.outputs[0], output.inputs["Volume"])
+        self.assertEqual([closure.type for closure in self.export().closures], ["transparent"])
+        self.assertNoted("has a volume, which is not supported")
+        self.assertFalse([note for note in self.context.notes if "no surface" in note])
+
     def test_nothing_is_black_as_in_cycles_and_named(self):
         self.assertRgb(self.export().diffuse.value, (0, 0, 0))
         self.assertNoted("no surface connected")

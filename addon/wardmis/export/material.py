@@ -13,7 +13,7 @@ from .. import compat
 from .context import ExportContext
 from .image import MISSING
 from .model import ClosureData, ColorInput, MaterialData, ScalarInput, not_finite
-from .program.closures import Shading
+from .program.closures import WHITE, Closure, Shading
 from .program.reader import Reader
 from .program.surface import MOST_OPERATIONS, material_of
 from .socket_value import NotFinite
@@ -77,11 +77,16 @@ def _surface_of(material: Any, owner: Owner) -> MaterialData:
     if output is None:
         owner.context.note(f"{owner.place} has no output node that is not muted; rendered as black, as in Cycles")
         return MaterialData(material.name)
+    linked = {}
     for name in ("Volume", "Displacement"):
         part = output_use(tree, name, owner)
-        if part is not None and part.is_linked(name):
+        linked[name] = part is not None and part.is_linked(name)
+        if part is not None and linked[name]:
             part.note(f"has a {name.lower()}, which is not supported; it is left out")
     if output.source("Surface").is_nothing:
+        if linked["Volume"]:  # its surface is air, as in Cycles
+            shading.closures.append(Closure(output, "transparent", 1.0, {"color": WHITE}))
+            return material_of(material.name, shading)
         output.note("has no surface connected; rendered as black, as in Cycles")
         return MaterialData(material.name)
     shading.read(output, "Surface")

@@ -33,6 +33,17 @@ def ward(**inputs):
 
 
 @scene
+def nothing_but_a_thin_volume():
+    """Whose surface is air; the volume scatters nothing."""
+    things("VolumeScatter", Density=0.0)
+    tree = bpy.data.objects["Ball"].active_material.node_tree
+    output = tree.nodes["Material Output"]
+    tree.links.new(output.inputs["Surface"].links[0].from_socket, output.inputs["Volume"])
+    tree.links.remove(output.inputs["Surface"].links[0])
+    bpy.data.objects["Box"].location.z += 0.1  # its bottom is to be no part of the floor
+
+
+@scene
 def ward_diffuse():
     """Without a specular part the node is Lambert's."""
     ward(Diffuse_Color=(0.7, 0.4, 0.2, 1), Specular_Color=(0, 0, 0, 1))
