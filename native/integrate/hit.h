@@ -162,18 +162,10 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
   const SurfaceOf<N, K>& s = x.surface;
   const Vec3f woFloat = x.frame.toLocal(x.wo);
   const bool split = plan.integrand == Integrand::kSplit;
-  const Mixture<K> mixture(plan.fractions, plan.samples, plan.weights);
   const uint32_t dimension = plan.vertex * Dimensions<K>::kPerVertex;
   const std::array<int, K> n =
       systematicCounts<K>(plan.fractions, plan.samples,
                           sampler.spread1D(plan.pixelKey, dimension + Dimensions<K>::kSampleCounts, plan.index));
-  const Vec3<T> wo{T(woFloat.x), T(woFloat.y), T(woFloat.z)};
-  // the surface's own integrands; below its normal's horizon, which looks into the surface, a lobe is zero
-  std::array<bool, Techniques<K>::kSurface> present{};
-  if constexpr (kSpec)
-    for (size_t l = 0; l < kLobes; ++l) present[l] = s.hasLobe(l) && (kGeneral || woFloat.z > 0);
-  present[kCosine] = kDiff && s.hasDiffuse();
-
   const auto indexOf = [&](size_t t, int m) { return plan.firstPoint[t] + static_cast<uint32_t>(m); };
   Scratch<LightChoice, kMaxSamplesPerHit> lights;  // first of all, see Emitters::choose()
   for (int m = 0; m < n[kLight]; ++m)
@@ -181,6 +173,14 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       return world.emitters.choose(sampler.getChoice(
           plan.pixelKey, dimension + Dimensions<K>::kTechnique + uint32_t{kLight}, indexOf(kLight, m)));
     });
+
+  const Mixture<K> mixture(plan.fractions, plan.samples, plan.weights);
+  const Vec3<T> wo{T(woFloat.x), T(woFloat.y), T(woFloat.z)};
+  // the surface's own integrands; below its normal's horizon, which looks into the surface, a lobe is zero
+  std::array<bool, Techniques<K>::kSurface> present{};
+  if constexpr (kSpec)
+    for (size_t l = 0; l < kLobes; ++l) present[l] = s.hasLobe(l) && (kGeneral || woFloat.z > 0);
+  present[kCosine] = kDiff && s.hasDiffuse();
 
   // Draw the directions of all techniques.
   LobeBatch<T, kLobes, kMaxSamplesPerHit> batch;
@@ -218,6 +218,19 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       batch.set(j++, toCosineHemisphere<T>({T(u.x), T(u.y)}));
     }
   end[kCosine] = j;
+  const auto inWorld = [&](const Vec3<T>& wi) {
+    return normalize(
+        x.frame.toWorld(Vec3f{static_cast<float>(wi.x), static_cast<float>(wi.y), static_cast<float>(wi.z)}));
+  };
+  // where surface samples look at a sky, for which they then wait no more
+  const bool skyAhead = world.emitters.skyAhead();
+  Scratch<Environment::Place, kMaxSamplesPerHit> skies;
+  if (skyAhead)
+    for (int k = 0; k < j; ++k) {
+      const Vec3<T> wi = batch.wi(k);
+      if (kGeneral ? dot(wi, wi) > T(0) : wi.z > T(0))  // else it is not followed
+        skies.make(k, [&] { return world.emitters.skyAhead(inWorld(wi)); });
+    }
   for (int m = 0; m < n[kLight]; ++m, ++j) {
     light.make(
         j, [&] { return world.emitters.sample(x.position, lights[m], static_cast<int>(plan.vertex), x.path.time); });
@@ -314,16 +327,13 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     Values f{};
     LitOtherwise<K> lit;
     Fractions<K> p{};
-    const auto inWorld = [&] {
-      return normalize(
-          x.frame.toWorld(Vec3f{static_cast<float>(wi.x), static_cast<float>(wi.y), static_cast<float>(wi.z)}));
-    };
     bool sharp = false, ahead = true;  // wi leaves the surface on the viewer's side
     float moved = 0;                   // how far light samples are, near the edge of the surface's own shadow
     if (x.smooth.cutoff > 0 && mixture.n[kLight] > 0) [[unlikely]]
-      moved = x.smooth.amount(static_cast<float>(wi.z), dot(x.geometric, t == kLight ? light[k].direction : inWorld()));
+      moved =
+          x.smooth.amount(static_cast<float>(wi.z), dot(x.geometric, t == kLight ? light[k].direction : inWorld(wi)));
     if constexpr (kGeneral) {
-      const Vec3f d = t == kLight ? light[k].direction : inWorld();
+      const Vec3f d = t == kLight ? light[k].direction : inWorld(wi);
       const float side = dot(x.geometric, d);
       ahead = side > 0;
       // on the other side a lobe has no density of its own, whatever others have there: zero, and it counts
@@ -448,7 +458,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     }
 
     // A surface technique: follow the ray to what it meets.
-    const Vec3f d = inWorld();
+    const Vec3f d = inWorld(wi);
     if (!kGeneral && !(dot(x.geometric, d) > 0)) continue;
     const bool diffuse = t == kCosine || (kGeneral && !from[k].glossy);
     if constexpr (kGeneral)
@@ -463,7 +473,6 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
                                                (ahead ? kReflectionRay : kTransmissionRay)),
                          x.rayLength);
     ++counts.rays[t];
-    const Environment::Place sky = world.emitters.skyAhead(d);
     Rgb seenThrough{1, 1, 1};
     // What light samples aim at is hidden beyond what they pass: the image must not depend on how many there are.
     const auto isHidden = [&](float pdf) {
@@ -478,7 +487,8 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
         p[kLight] = e.pdf;
         addLight(kGeneral ? e.radiance * seenThrough : e.radiance, e.visibility);
       };
-      world.emitters.along(ray, tMax, escaped, static_cast<int>(plan.vertex), meet, sky);
+      world.emitters.along(ray, tMax, escaped, static_cast<int>(plan.vertex), meet,
+                           skyAhead ? skies[k] : Environment::Place{});
     });
     if (!hit.valid()) continue;
     const Shape& shape = world.geometry.shapes[hit.shape];

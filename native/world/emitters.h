@@ -64,10 +64,10 @@ class Emitters {
   LightChoice choose(ChoicePoint u) const;
   LightSample sample(Vec3f from, const LightChoice& choice, int bounces = 0, float time = kMiddle) const;
   void look(LightSample& sample, Vec3f from, int bounces = 0) const;
-  // Where a ray of this direction meets the sky, if it does: for along(). Of several skies that are images, of one.
-  Environment::Place skyAhead(Vec3f direction) const {
-    return skyAhead_ ? skyAhead_->find(direction) : Environment::Place{};
-  }
+  // Whether there is a sky that is looked up in memory, and where a ray of this direction meets it, if it does: for
+  // along(). Of several, of one.
+  bool skyAhead() const { return skyAhead_ != nullptr; }
+  Environment::Place skyAhead(Vec3f direction) const { return skyAhead_->find(direction); }
 
   // Calls f(EmitterHit) for each light object that the ray meets before tMax, and, where the ray goes on for ever
   // (escaped), for the environment and suns. bounces: by which the path has come to the ray's origin; 0 from the

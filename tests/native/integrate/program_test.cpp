@@ -21,20 +21,6 @@ RenderSettings settings(uint32_t spp, Integrator integrator = Integrator::kDirec
   return s;
 }
 
-// The material's program, with one result after the other by the numbers of its values.
-void setProgram(Material& m, const json& operations, const std::vector<int>& results) {
-  const JsonDocument document("scene.glb",
-                              json{{"program", {{"operations", operations}}}, {"results", results}}.dump());
-  const Json root(document);
-  ProgramReader reader(root.at("program"), 0);
-  const JsonArray list = root.array("results");
-  for (size_t i = 0; i < list.size(); ++i)
-    for (const OperationInfo& o : kOperations)
-      if (operations[static_cast<size_t>(results[i])].at("op").get<std::string>() == o.name)
-        reader.use(list[i], o.result);
-  m.program = reader.finish([](const Json&) { return 0; });
-}
-
 TEST(ProgramRender, ConstantsAreTheSameToTheBit) {
   Scene scene;
   Material m = ward({0.25f, 0.5f, 0.125f}, {0.25f, 0.125f, 0.25f}, 0.25f, WardVariant::kWardGmd);

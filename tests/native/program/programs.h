@@ -9,6 +9,7 @@
 
 #include "gltf/program.h"
 #include "program/run.h"
+#include "scene/scene.h"
 
 namespace wardmis::test {
 
@@ -25,6 +26,20 @@ inline std::shared_ptr<Program> program(const json& operations, size_t textures 
   for (const OperationInfo& o : kOperations)
     if (o.name == name) reader.use(root.at("last"), o.result);
   return reader.finish([](const Json& index) { return static_cast<int>(index.integer(0, 1000)); });
+}
+
+// The material's program, with one result after the other by the numbers of its values.
+inline void setProgram(Material& m, const json& operations, const std::vector<int>& results) {
+  const JsonDocument document("scene.glb",
+                              json{{"program", {{"operations", operations}}}, {"results", results}}.dump());
+  const Json root(document);
+  ProgramReader reader(root.at("program"), 0);
+  const JsonArray list = root.array("results");
+  for (size_t i = 0; i < list.size(); ++i)
+    for (const OperationInfo& o : kOperations)
+      if (operations[static_cast<size_t>(results[i])].at("op").get<std::string>() == o.name)
+        reader.use(list[i], o.result);
+  m.program = reader.finish([](const Json&) { return 0; });
 }
 
 // What the last of the operations makes: one number or three.

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `./dev bench`: how many million evaluations (f and pdf) and samples of Ward a core does in a second, and what a look
-// at each pattern takes, as tables.
+// `./dev bench`: how many million evaluations (f and pdf) and samples of Ward a core does in a second, what a look at
+// each pattern takes, and what a program costs a hit, as tables.
 #include <fmt/format.h>
 
-#include "loops.h"
+#include "bsdf/loops.h"
+#include "integrate/bench_program.h"
 #include "pattern/bench_patterns.h"
 
 int main() {
@@ -22,4 +23,5 @@ int main() {
   const auto [e] = bestSeconds(20000, [&] { d.evaluate(wardBatch); });
   fmt::print("| the renderer's batch here ({}) | {:.0f} | |\n", clonedFor(), rate(e));
   benchPatterns();
+  benchProgram();
 }
