@@ -222,8 +222,8 @@ InteractionOf<SurfaceOf<N, K>> interactWith(const Scene& scene, const LobeNumber
         !(n[i[0]] == n[i[1]] && n[i[0]] == n[i[2]] && std::abs(dot(ns, ng)) > kFlat))
       x.smooth = {placement.terminator.geometry, hit.shape, hit.triangle, hit.u, hit.v};
   }
-  const bool turned = dot(ng, x.wo) < 0;
-  if (turned) ng = -ng, ns = -ns;
+  const bool away = dot(ng, x.wo) < 0;
+  if (away) ng = -ng, ns = -ns;
   x.geometric = ng;
   if (hit.shared) [[unlikely]]
     x.primitive = {hit.placement, hit.shape, hit.triangle};
@@ -233,6 +233,7 @@ InteractionOf<SurfaceOf<N, K>> interactWith(const Scene& scene, const LobeNumber
   if (!shape.part->normals.empty() && m.closures.empty()) ns = bent(ns, ng, x.wo);
 
   const auto point = [&] {
+    const bool turned = away != placement.mirrors();
     return ShadedPoint{placement, shape, hit.triangle, hit.u, hit.v, x.position, ng, ns, x.wo, turned, x.path, hit.t};
   };
   resolveSurface<N, K>(

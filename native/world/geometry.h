@@ -55,6 +55,8 @@ struct Placement {
   const ObjectData* object = nullptr;   // null: as it is by default
   const MovingFrame* motion = nullptr;  // of toWorld; null: it stands
 
+  // A triangle's corners as placed go round the other way than in the mesh, whose order says which side is the front.
+  bool mirrors() const { return toWorld.determinant() < 0; }
   Placement at(float time) const {  // where it is then
     Placement p = *this;
     if (motion != nullptr) p.toWorld = motion->at(time);

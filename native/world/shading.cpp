@@ -174,7 +174,7 @@ void fill(const Scene& scene, const ShadedPoint& p, const Program& program, Shad
   c.normal = frame(p.normal);
   c.trueNormal = frame(p.geometric);
   c.incoming = frame(p.wo);
-  c.backfacing = p.turned != (!strand && p.placement.toWorld.determinant() < 0);
+  c.backfacing = p.turned;
   c.onCurve = isCurve(p.shape);
   c.materialIndex = scene.materials[static_cast<size_t>(p.shape.material)].index;
 
@@ -308,8 +308,8 @@ Rgb emissionAt(const Scene& scene, const Placement& placement, const Shape& shap
   const Vec3f to = from - position;
   const float distance = length(to);
   const Vec3f wo = distance > 0 ? to / distance : geometric;
-  const bool turned = dot(geometric, wo) < 0;
-  if (turned) geometric = -geometric, normal = -normal;
+  const bool away = dot(geometric, wo) < 0, turned = away != placement.mirrors();
+  if (away) geometric = -geometric, normal = -normal;
   PathState path;
   path.time = time;
   path.kinds = 0;  // it is looked at by a light sample, which is a ray of no kind

@@ -16,7 +16,7 @@ struct ShadedPoint {
   Vec3f position;
   Vec3f geometric, normal;  // on the side of wo
   Vec3f wo;
-  bool turned;  // the triangle's own normal, by the order of its vertices as placed, looks the other way; a curve or
+  bool turned;  // the triangle's own normal, by the order of its vertices in the mesh, looks the other way; a curve or
                 // sphere is seen from inside
   PathState path;
   float rayLength;

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import bpy
-from stage import add, ball, camera, diffuse, floor, lamp, material, mesh, scene, sky, square
+from stage import add, ball, box, camera, diffuse, floor, lamp, material, mesh, scene, sky, square
 
 from scenes.worlds import image_sky
 
@@ -55,6 +55,21 @@ def limited(transmission: int, transparent: int) -> None:
 def enter(name: str, build: Callable[[], None], **more: Any) -> None:
     build.__name__ = name
     scene(bounces=8, **more)(build)
+
+
+@scene(bounces=8, samples=64)
+def mirrored_glass():
+    """Its inside is that of the mesh: boxes of a mesh of their own and of a shared one, whose objects are mirrored."""
+    floor()
+    ball(diffuse((0.8, 0.3, 0.1)), location=(0, 2, 0.8), radius=0.8)
+    glass = shader("Glass")
+    box(glass, location=(-1.4, -0.4, 0.9), scale=(0.5, 0.5, -0.7))
+    shared = box(glass, location=(0, -0.4, 0.9), scale=(-0.5, 0.5, 0.7))
+    other = bpy.data.objects.new("Other", shared.data)
+    bpy.context.scene.collection.objects.link(other)
+    other.location, other.scale = (1.4, -0.4, 0.9), (0.5, 0.5, 0.7)
+    sky((0.3, 0.4, 0.5))
+    camera()
 
 
 for bounces in (0, 1):
