@@ -370,6 +370,9 @@ RAMP_STEPS = 255 if VERSION < (4, 0, 0) else 256  # of the tables that Cycles ma
 
 # What tells a number of an attribute makes three of it and takes their mean, which may have another last bit.
 NUMBERS_ARE_MEANS = VERSION >= (5, 2, 0)
+
+# Whether an image that is missing is clipped as others are; later it is everywhere.
+MISSING_IMAGES_ARE_CLIPPED = VERSION < (5, 2, 0)
 # Cycles is given trees without groups, reroutes and muted nodes, which convert nothing any more.
 NODE_TREES_ARE_INLINED = VERSION >= (5, 0, 0)
 # A Mix of numbers or vectors whose factor is 0 or 1 is none to Cycles, as one of colours always was.

@@ -101,6 +101,22 @@ def missing():
 
 
 @scene
+def missing_decal():
+    """Clipped, it is magenta in its place alone, and its alpha shows what is below elsewhere."""
+    picture = bpy.data.images.new("gone", 4, 4)
+    picture.source, picture.filepath = "FILE", "//no-such-file.png"
+    face_on()
+
+    def build(tree):
+        node = texture(
+            tree, picture, {"extension": "CLIP"}, ("POINT", {"Location": (-0.5, -0.5, 0), "Scale": (2, 2, 1)})
+        )
+        return mixed(tree, node.outputs["Alpha"], (0.2, 0.6, 0.3, 1), node.outputs["Color"])
+
+    sheet(painted(build))
+
+
+@scene
 def no_image():
     shows(None)
 

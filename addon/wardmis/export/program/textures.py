@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+from ... import compat
 from ..image import MISSING, Picture, picture_of
 from ..tree import NodeUse
 from .builder import Value
@@ -52,7 +53,8 @@ def _picture(use: NodeUse, is_light: bool) -> Picture | None:
     reason = found.missing()
     if reason is not None:
         use.note(f"needs an image; {reason}; {instead} shown instead")
-        return None
+        is_clipped = compat.MISSING_IMAGES_ARE_CLIPPED and getattr(node, "extension", "") == "CLIP"
+        return found if is_clipped and not is_light and node.image.source != "TILED" else None
     for deviation in found.deviations():
         use.note(f"shows {deviation}")
     return found
