@@ -93,7 +93,7 @@ struct ShadingContext {
   Vec3f rayOrigin{};  // of a world: where it is looked at from
   Affine camera;      // to world; unit axes
   bool orthographic = false, panoramic = false;
-  float window[4] = {-1, 1, -1, 1};  // left, right, bottom, top of the border, at distance 1 (or in metres)
+  float window[4] = {-1, 1, -1, 1};  // left, right, bottom, top of the frame, at distance 1 (or in metres)
   Varying panorama{};                // where a panoramic camera sees the point, in its window
   // kReadsRay
   PathState path;

@@ -140,14 +140,8 @@ void fillCamera(const Scene& scene, const Program& program, ShadingContext& c) {
   const Affine& m = camera.toWorld;
   c.camera = {frame(m.x), frame(m.y), -frame(m.z), frame(m.t)};
   c.orthographic = camera.orthographic();
-  const Film& f = scene.film;
-  const auto along = [](float from, float to, int k, int n) {
-    return from + (to - from) * static_cast<float>(k) / static_cast<float>(n);
-  };
-  c.window[0] = along(camera.left, camera.right, f.x0, f.width);
-  c.window[1] = along(camera.left, camera.right, f.x1, f.width);
-  c.window[2] = along(camera.bottom, camera.top, f.y0, f.height);
-  c.window[3] = along(camera.bottom, camera.top, f.y1, f.height);
+  // of the whole frame, whatever part of it is rendered: a border changes no picture
+  c.window[0] = camera.left, c.window[1] = camera.right, c.window[2] = camera.bottom, c.window[3] = camera.top;
   if (camera.panoramic()) {
     // steps of a pixel, not of a derivative: that is what a shift asks for
     const auto seen = [&](Vec3f at) {

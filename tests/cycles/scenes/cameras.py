@@ -4,7 +4,23 @@
 import math
 
 import bpy
-from stage import ball, box, camera, collection, daylight, diffuse, floor, instance, place, scene
+from stage import (
+    add,
+    ball,
+    box,
+    camera,
+    collection,
+    daylight,
+    diffuse,
+    face_on,
+    feed,
+    floor,
+    instance,
+    painted,
+    place,
+    scene,
+    sheet,
+)
 from wardmis import compat
 
 SAMPLES = 16  # of little noise
@@ -90,6 +106,18 @@ def border():
     settings.resolution_x, settings.resolution_y, settings.resolution_percentage = 233, 152, 47
     settings.use_border = settings.use_crop_to_border = True
     settings.border_min_x, settings.border_max_x, settings.border_min_y, settings.border_max_y = 0.21, 0.83, 0.13, 0.76
+
+
+@scene
+def border_and_window_coordinates():
+    """These are of the whole frame, on surfaces and in the sky."""
+    face_on()
+    sheet(painted(lambda tree: add(tree, "TexCoord").outputs["Window"]), size=1.2)
+    tree = bpy.context.scene.world.node_tree
+    feed(tree, tree.nodes["Background"].inputs["Color"], add(tree, "TexCoord").outputs["Window"])
+    settings = bpy.context.scene.render
+    settings.use_border = settings.use_crop_to_border = True
+    settings.border_min_x, settings.border_max_x, settings.border_min_y, settings.border_max_y = 0.1, 0.6, 0.3, 1
 
 
 @scene
