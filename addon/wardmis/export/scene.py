@@ -158,6 +158,11 @@ def _is_gas_domain(obj: Any) -> bool:
     return any(settings.domain_type == "GAS" for settings in domains)
 
 
+def _color_owner(obj: Any, instance: Any) -> Any:
+    """Whose Color in the viewport is that of a placed object: the outermost instancer's, as Blender draws it."""
+    return instance.parent if instance.is_instance and instance.parent is not None else obj
+
+
 class _Gatherer:
     """One pass over the instances of the depsgraph; what is shared is exported once."""
 
@@ -308,7 +313,7 @@ class _Gatherer:
             data.index = obj.pass_index
         for program in programs:
             if program.reads("object-color", "object-alpha"):
-                r, g, b, a = obj.color
+                r, g, b, a = _color_owner(obj, instance).color
                 data.color = (r, g, b, a)
             if program.reads("object-random"):
                 data.random = _random_of(obj, instance)
@@ -337,7 +342,7 @@ class _Gatherer:
                 )
 
     def _lamp_object(self, obj: Any, instance: Any) -> LampObject:
-        r, g, b, alpha = obj.color
+        r, g, b, alpha = _color_owner(obj, instance).color
         owners = self._owners_of_attributes(obj, instance)
         return LampObject((r, g, b), alpha, float(obj.pass_index), _random_of(obj, instance), owners)
 

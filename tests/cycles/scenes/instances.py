@@ -121,6 +121,23 @@ def random_of_instances():
 
 
 @scene
+def color_of_instances():
+    """That of the outermost instancer, whatever places them."""
+    face_on()
+    color = painted(lambda tree: add(tree, "ObjectInfo").outputs["Color"])
+    child = mesh("Child", *square(0.4), color)
+    parent = mesh("Parent", *square(1.5))
+    child.parent, parent.instance_type, parent.show_instancer_for_render = parent, "VERTS", False
+    child.color, parent.color = (0.9, 0.5, 0.2, 1), (0.1, 0.8, 0.3, 1)
+    outermost = instance(collection("Inner", parent, child), location=(0.3, 0, 0))
+    outermost.color = (0.1, 0.3, 0.9, 1)
+    other = mesh("Placed", *square(0.3), color)
+    by_faces = mesh("By faces", *square(0.5))
+    other.parent, by_faces.instance_type, by_faces.show_instancer_for_render = by_faces, "FACES", False
+    other.color, by_faces.color = (0.9, 0.5, 0.2, 1), (0.8, 0.1, 0.7, 1)
+
+
+@scene
 def random_of_names():
     face_on()
     data = mesh("Tile", *square(0.095), painted(random_color)).data
