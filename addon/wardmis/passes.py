@@ -135,6 +135,22 @@ def not_available(layer: Any) -> Iterator[str]:
         name = flag.identifier
         if name.startswith("use_pass_") and name not in {*BLENDERS, *OTHERS} and getattr(layer, name):
             yield flag.name
+    yield from _of_cycles(layer)
+    yield from (f"of shader outputs, '{output.name}' (AOV)" for output in layer.aovs if output.name)
+    yield from (f"of the light group '{group.name}'" for group in layer.lightgroups)
+
+
+def _of_cycles(layer: Any) -> Iterator[str]:
+    """Passes that only Cycles' own settings ask for."""
+    settings = getattr(layer, "cycles", None)  # its add-on may be off
+    for flag in settings.bl_rna.properties if settings else ():
+        if (
+            "pass" in flag.identifier
+            and flag.type == "BOOLEAN"
+            and not flag.default
+            and getattr(settings, flag.identifier)
+        ):
+            yield {"denoising_store_passes": "Denoising Data"}.get(flag.identifier, flag.name)
 
 
 def register_passes(engine: Any, scene: Any, layer: Any) -> None:

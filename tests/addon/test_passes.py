@@ -31,6 +31,16 @@ class Passes(SceneTest):
         for each in ours:
             self.assertIn(each, theirs)
 
+    def test_what_another_engine_would_make_is_not_available(self):
+        layer = bpy.context.view_layer
+        layer.use_pass_z = layer.use_pass_mist = True
+        layer.cycles.denoising_store_passes = layer.cycles.use_pass_shadow_catcher = True
+        layer.aovs.add().name = "Mask"
+        layer.lightgroups.add(name="Key")
+        expected = ["Mist", "Shadow Catcher", "Denoising Data"]
+        expected += ["of shader outputs, 'Mask' (AOV)", "of the light group 'Key'"]
+        self.assertEqual(list(passes.not_available(layer)), expected)
+
     def test_option_names_what_this_blender_calls_otherwise(self):
         layer = bpy.context.view_layer
         layer.use_pass_object_index = layer.use_pass_glossy_indirect = layer.use_pass_z = True
