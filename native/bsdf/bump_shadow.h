@@ -35,7 +35,7 @@ inline BumpShadow bumpShadow(int version, LobeKind kind, float ownLight, float o
     const float alpha2 = std::clamp(0.125f * (1 / (turned * turned) - 1), 0.0f, 1.0f);
     return both(2 / (1 + std::sqrt(1 + alpha2 * (1 / (light * light) - 1))));
   }
-  if (!soft) return {1, version >= 4 && (ownLight < 0) != (lobeLight < 0) ? 0.0f : 1.0f};
+  if (!soft) return {1, (ownLight < 0) != (lobeLight < 0) ? 0.0f : 1.0f};
   const float below = lobeLight * ownLobe, g = below != 0 ? ownLight / below : 0;
   if (g >= 1) return {1, 1};
   return both(g < 0 ? 0 : g * (1 + g * (1 - g)));

@@ -4,7 +4,7 @@
 import random
 
 import numpy as np
-from stage import add, ball, camera, image, lamp, material, mesh, scene, sheet, sky
+from stage import add, ball, camera, face_on, image, lamp, material, mesh, scene, sheet, sky
 from wardmis import compat
 
 COLUMNS, ROWS = 4, 3
@@ -333,6 +333,38 @@ def normals_away():
     kinds = (("BsdfDiffuse", {}), ("BsdfDiffuse", {"Roughness": 1}), ("BsdfTranslucent", {}), cloth)
     normals = ((0.9, 0.3, 0.1), (-0.8, 0.6, 0.2), (0.3, -0.5, -0.8))
     on_balls(*(turned(kind, normal, **inputs) for normal in normals for kind, inputs in kinds))
+
+
+@scene
+def gloss_and_lamps_behind():
+    """Of normals that see them, while the faces do not."""
+    normals = ((0.7, 0.1, 0.6), (-0.6, 0.5, 0.6), (0.1, -0.8, 0.5))
+    kinds = (
+        glossy("GGX", 0.6),
+        glossy("BECKMANN", 0.4),
+        named(Roughness=0.5),
+        glass("GGX", 0.5, IOR=1.3),
+    )
+
+    def at(normal, kind):
+        def build(tree):
+            made = kind(tree)
+            told = add(tree, "CombineXYZ", **dict(zip("XYZ", normal))).outputs[0]
+            tree.links.new(told, made.node.inputs["Normal"])
+            return made
+
+        return build
+
+    for row, normal in enumerate(normals):
+        for column, kind in enumerate(kinds):
+            of, tree, output = material()
+            tree.links.new(at(normal, kind)(tree), output.inputs["Surface"])
+            made = sheet(of, size=0.48)
+            made.location = column - 1.5, row - 1, 0
+    face_on()
+    sky((0.1, 0.1, 0.1))
+    for place in ((-3, 2, -1), (4, 1, -1.5), (0, -4, -0.8)):
+        lamp("POINT", place, 300)
 
 
 @scene(bounces=2)
