@@ -204,6 +204,7 @@ int run(Options& o) {
     if (!reporter.json())
       for (const std::string& note : scene.notes) reporter.warn(note);
     reporter.warnOfLacking(scene.lacking);
+    for (const std::string& doubt : st.doubts) reporter.warn(doubt);
     if (scene.degenerateTriangles > 0)
       reporter.info(fmt::format("  dropped: {} triangles without area", scene.degenerateTriangles));
   };

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "integrate/cost.h"
+#include "integrate/doubles.h"
 #include "integrate/memory.h"
 #include "integrate/setup.h"
 
@@ -193,6 +194,8 @@ FilmBuffer renderWith(const BuiltScene& built, const RenderSettings& settings, S
   stats.needs = setup.needs;
   stats.kernel = setup.kernelNeeds;
   stats.leftOut = leftOut(built.scene, setup.needs, built.emitters);
+  if (const Doubles doubles = visibleDoubles(built); doubles.share >= kSharedPlaceIsTold)
+    stats.doubts.push_back(doubles.told());
   stats.triangles = built.geometry.triangles;
   stats.instances = built.geometry.placements.size();
   stats.emissiveTriangles = built.emitters.emissiveTriangles();

@@ -69,6 +69,7 @@ struct Statistics {
   Counts counts;
   uint32_t needs = 0, kernel = 0;
   std::vector<std::string> leftOut;
+  std::vector<std::string> doubts;  // of what is seen, for the user
   uint64_t triangles = 0, instances = 0, emissiveTriangles = 0;
   int threads = 0;
   TechniqueMask techniques = 0;             // those that the scene has
