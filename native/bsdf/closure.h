@@ -101,6 +101,9 @@ inline void addTransparent(int version, Rgb weight, Add&& add) {
   addLobe(version, l, add);
 }
 
+// The color that light reflected more than once takes: since 4.0 as it is, also where it is brighter than white.
+inline Rgb compensated(int version, Rgb color) { return version == 3 ? clampedTo1(color) : color; }
+
 // Glossy: color decides over multiple reflections alone; weight contains it, too.
 template <class Add>
 inline void addGlossy(int version, Glossy distribution, Rgb weight, Rgb color, float ax, float ay, float cosThetaO,
@@ -112,7 +115,7 @@ inline void addGlossy(int version, Glossy distribution, Rgb weight, Rgb color, f
   if (kind == LobeKind::kAshikhminShirley) l.ax = std::max(l.ax, 1e-4f), l.ay = std::max(l.ay, 1e-4f);
   if (distribution == Glossy::kMultiGgx) {
     l.masking = Masking::kCorrelated;
-    l.weight *= compensate(reflectionAlbedo(tableRoughness(l), cosThetaO), clampedTo1(color)).factor();
+    l.weight *= compensate(reflectionAlbedo(tableRoughness(l), cosThetaO), compensated(version, color)).factor();
   }
   addLobe(version, l, add);
 }
@@ -142,7 +145,7 @@ inline void addGlass(int version, Glossy distribution, Rgb weight, Rgb color, fl
   if (distribution == Glossy::kMultiGgx) {
     if (version == 3) look.fresnel = Fresnel::kDielectric, look.unseenFacets = false;
     const float roughness = std::sqrt(alpha);
-    weight *= compensate(glassAlbedo(roughness, cosThetaO, eta), clampedTo1(color)).factor();
+    weight *= compensate(glassAlbedo(roughness, cosThetaO, eta), compensated(version, color)).factor();
   } else if (version == 3) {  // Fresnel of the mean surface, and of its facets total internal reflection alone
     const float f = fresnelDielectric(cosThetaO, eta);
     look.masking = Masking::kSeparable, look.fresnel = Fresnel::kNone;

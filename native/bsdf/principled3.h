@@ -40,10 +40,10 @@ inline void addSpecular3(const Principled3& p, Rgb weight, float cosThetaO, Add&
   l.fresnel = Fresnel::kBlended;
   l.eta = 2 / (1 - std::sqrt(std::max(0.0f, 0.08f * p.specular))) - 1;
   const float luminance = 0.3f * p.baseColor.x + 0.6f * p.baseColor.y + 0.1f * p.baseColor.z;
-  l.f0 = hueOf(p.baseColor, luminance, p.specularTint) * (p.specular * 0.08f * (1 - p.metallic)) +
-         p.baseColor * p.metallic;
+  l.f0 = clampedTo1(hueOf(p.baseColor, luminance, p.specularTint) * (p.specular * 0.08f * (1 - p.metallic)) +
+                    p.baseColor * p.metallic);
   if (p.multiscatter && p.roughness > 0.075f) {
-    l.masking = Masking::kCorrelated, l.f0 = clampedTo1(l.f0);
+    l.masking = Masking::kCorrelated;
     l.weight *= compensate(reflectionAlbedo(tableRoughness(l), cosThetaO), blendedMean(l.f0, l.eta)).factor();
   }
   addLobe(3, l, add);

@@ -253,6 +253,22 @@ def gloss():
 
 
 @scene(bounces=2)
+def brighter_than_white():
+    """Colours above 1: what is reflected more than once takes them as they are (since 4.0), a metal of the Principled shader is white at most."""
+    bright = rgba(0.5, 1.7, 1)
+    many = (
+        []
+        if OLD
+        else [glossy("MULTI_GGX", r, color=bright) for r in (0.3, 0.6)] + [glass("MULTI_GGX", 0.5, Color=bright)]
+    )
+    on_balls(
+        *many,
+        *(glossy("GGX", r, color=bright) for r in (0.3, 0.6)),
+        *(principled(Base_Color=bright, Roughness=0.5, Metallic=m) for m in (1.0, 0.5, 0.0)),
+    )
+
+
+@scene(bounces=2)
 def anisotropic_gloss():
     """Cycles 3.4 draws Beckmann's facets by the first axis' roughness for both and divides by the density of both (113 % off in a
     block); its walk among facets is up to 27 % off the factor, which is not explained. They are left out there."""
