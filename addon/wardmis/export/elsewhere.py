@@ -23,7 +23,7 @@ def pixels_elsewhere(image: Any, path: str, frame: int | None = None) -> np.ndar
         except RuntimeError:
             return None
         copy.source = "FILE" if frame is None else "MOVIE"
-        if image.colorspace_settings.name:  # empty until Blender has looked at the image
+        if image.colorspace_settings.name:  # empty where Blender could not read the image
             copy.colorspace_settings.name = image.colorspace_settings.name
         copy.alpha_mode = image.alpha_mode
         if frame is not None:

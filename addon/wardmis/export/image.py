@@ -30,7 +30,7 @@ SIGNATURES = (
 )
 EXR_BEGINS = SIGNATURES[2][0]
 COLOR_SPACES = {"sRGB": "sRGB", "Linear": "linear", "Linear Rec.709": "linear", "Non-Color": "linear", "Raw": "linear"}
-COLOR_SPACES[""] = "sRGB"  # of a movie that Blender has not looked at
+COLOR_SPACES[""] = "sRGB"  # of a movie that Blender could not read
 
 
 @dataclass(frozen=True)
@@ -257,6 +257,8 @@ def picture_of(image: Any, shows_alpha: bool, user: Any, scene_frame: int) -> Pi
 
     Cycles multiplies colours by alpha where the file has not done so, and divides them again where the alpha is used.
     """
+    if image.source == "MOVIE":
+        tuple(image.size)  # Blender finds its colour space when it reads it
     plain = Picture(image, frame=frame_of(user, scene_frame) if image.source in {"SEQUENCE", "MOVIE"} else None)
     alpha = "ignored" if image.alpha_mode == "NONE" else "multiplied" if plain.is_to_be_multiplied else "kept"
     return replace(plain, alpha=alpha, divided=alpha_affects_colors(image) and shows_alpha)
