@@ -10,6 +10,7 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 from wardmis.export.context import ExportContext, ExportError
+from wardmis.export.elsewhere import assign
 from wardmis.export.file_alpha import file_alpha
 from wardmis.export.glb import write_glb
 from wardmis.export.image import Picture, WithinMemory, export_image, frame_of, path_of_frame, picture_of
@@ -145,6 +146,20 @@ class Images(unittest.TestCase):
             file.write(bytes(1000))
         self.assertIn(f"cannot be read from '{path}'", picture.missing())
         np.testing.assert_array_equal(export_image(picture).pixels, [[[1, 0, 1]]])
+
+    def test_assigns_when_blender_has_drawn_its_interface(self):
+        class Refusing:
+            refusals = 3
+
+            def __setattr__(self, name, value):
+                if self.refusals > 0:
+                    Refusing.refusals -= 1
+                    raise AttributeError("Writing to ID classes in this context is not allowed")
+                object.__setattr__(self, name, value)
+
+        owner = Refusing()
+        assign(owner, frame=7, source="MOVIE")
+        self.assertEqual((owner.frame, owner.source), (7, "MOVIE"))
 
     def test_pixels_of_other_files_are_read_in_data_of_their_own(self):
         """Where the renderer cannot, and Blender holds those of another one."""

@@ -7,12 +7,15 @@ open does not change.
 
 from __future__ import annotations
 
+import time
 from typing import Any
 
 import bpy
 import numpy as np
 
 from .blender_pixels import blender_pixels
+
+PATIENCE = 5.0  # seconds
 
 
 def pixels_elsewhere(image: Any, path: str, frame: int | None = None) -> np.ndarray | None:
@@ -22,12 +25,12 @@ def pixels_elsewhere(image: Any, path: str, frame: int | None = None) -> np.ndar
             copy = data.images.load(path)
         except RuntimeError:
             return None
-        copy.source = "FILE" if frame is None else "MOVIE"
+        assign(copy, source="FILE" if frame is None else "MOVIE")
         if image.colorspace_settings.name:  # empty where Blender could not read the image
-            copy.colorspace_settings.name = image.colorspace_settings.name
-        copy.alpha_mode = image.alpha_mode
+            assign(copy.colorspace_settings, name=image.colorspace_settings.name)
+        assign(copy, alpha_mode=image.alpha_mode)
         if frame is not None:
-            copy.use_deinterlace = image.use_deinterlace
+            assign(copy, use_deinterlace=image.use_deinterlace)
             _look(copy, frame, data)
         return None if 0 in copy.size else blender_pixels(copy)
 
@@ -35,6 +38,20 @@ def pixels_elsewhere(image: Any, path: str, frame: int | None = None) -> np.ndar
 def _look(image: Any, frame: int, data: Any) -> None:
     """A texture does so at the frame of its own."""
     texture = data.textures.new("", "IMAGE")
-    texture.image = image
-    texture.image_user.frame_current = frame
+    assign(texture, image=image)
+    assign(texture.image_user, frame_current=frame)
     texture.evaluate((0.0, 0.0, 0.0))
+
+
+def assign(owner: Any, **settings: Any) -> None:
+    """With patience: while its main thread draws the interface, which takes milliseconds, Blender refuses whoever assigns."""
+    end = time.monotonic() + PATIENCE
+    for name, value in settings.items():
+        while True:
+            try:
+                setattr(owner, name, value)
+                break
+            except AttributeError:
+                if time.monotonic() > end:
+                    raise
+                time.sleep(0.002)
