@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -62,11 +63,7 @@ def export_camera(camera: Any, render: Any) -> CameraData:
     """`camera` is the evaluated object."""
     if camera is None:
         raise ExportError("the scene has no active camera; add one, or choose one in Scene Properties > Camera")
-    if camera.type != "CAMERA":
-        raise ExportError(
-            f"object '{camera.name}' is the active camera, but is no camera; choose a camera in Scene Properties"
-        )
-    data = camera.data
+    data = camera.data if camera.type == "CAMERA" else _view_of(camera)
     if data.type not in {"PERSP", "ORTHO", "PANO"}:
         raise ExportError(
             f"camera '{camera.name}' is a custom one, made by a script, which WardMIS does not render; "
@@ -103,6 +100,23 @@ def export_camera(camera: Any, render: Any) -> CameraData:
         result.blade_rotation = data.dof.aperture_rotation
         result.blade_ratio = data.dof.aperture_ratio
     return result
+
+
+def _view_of(obj: Any) -> Any:
+    """Of an active camera that is none, as Cycles has it: a lens of 50 mm, and of a spot lamp that of its cone."""
+    is_spot = obj.type == "LIGHT" and obj.data.type == "SPOT"
+    return SimpleNamespace(
+        type="PERSP",
+        lens=16.0 / math.tan(obj.data.spot_size / 2) if is_spot else 50.0,
+        sensor_fit="AUTO",
+        sensor_width=36.0,
+        sensor_height=24.0,
+        shift_x=0.0,
+        shift_y=0.0,
+        clip_start=1e-5,
+        clip_end=1e5,
+        dof=SimpleNamespace(use_dof=False),
+    )
 
 
 def view_plane(data: Any, render: Any, resolution: tuple[int, int]) -> tuple[float, float, float, float]:

@@ -56,6 +56,18 @@ def orthographic():
 
 
 @scene
+def seen_by_a_spot():
+    """An active camera that is none has a lens of its own."""
+    things()
+    stage = bpy.context.scene
+    spot = bpy.data.objects.new("Spot", bpy.data.lights.new("Spot", "SPOT"))
+    stage.collection.objects.link(spot)
+    spot.location, spot.rotation_euler = stage.camera.location, stage.camera.rotation_euler
+    spot.data.energy, spot.data.spot_size = 50, 0.9
+    stage.camera = spot
+
+
+@scene
 def depth_of_field():
     data = things()
     data.dof.use_dof, data.dof.focus_distance, data.dof.aperture_fstop = True, 6, 0.05
