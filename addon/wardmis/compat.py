@@ -315,6 +315,17 @@ def uses_nodes(owner: Any) -> bool:
 BACKGROUND_LIGHTS_LAMPS = VERSION >= (4, 0, 0)
 
 
+def is_subdivided_by_pixels(scene: Any, obj: Any) -> bool:
+    """Whether Cycles subdivides a mesh as finely as it is seen: its last modifier's, in sets of experimental features before 5.0."""
+    last = obj.modifiers[-1] if obj.modifiers else None
+    if last is None or last.type != "SUBSURF" or not last.show_render:
+        return False
+    if VERSION >= (5, 0, 0):
+        return last.use_adaptive_subdivision
+    cycles = getattr(scene, "cycles", None)
+    return cycles is not None and cycles.feature_set == "EXPERIMENTAL" and obj.cycles.use_adaptive_subdivision
+
+
 def panorama_settings(camera: Any) -> Any:
     """Who has the kind of a panoramic camera, and its angles: they were Cycles' own until 4.2. None where that add-on is off."""
     return camera if hasattr(camera, "panorama_type") else getattr(camera, "cycles", None)

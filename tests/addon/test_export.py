@@ -550,6 +550,20 @@ class Visibility(SceneTest):
         self.assertEqual(found["Own"], (0.25, 0.5))
         np.testing.assert_allclose(found["Inside"], (0.1, 0))
 
+    def test_adaptive_subdivision_is_noted(self):
+        quad = self.add_quad()
+        divided = quad.modifiers.new("Finer", "SUBSURF")
+        self.assertEqual(self.gather().notes, [])
+        if bpy.app.version >= (5, 0, 0):
+            divided.use_adaptive_subdivision = True
+        else:
+            cycles = self.scene.cycles
+            self.addCleanup(setattr, cycles, "feature_set", cycles.feature_set)
+            cycles.feature_set, quad.cycles.use_adaptive_subdivision = "EXPERIMENTAL", True
+        self.assertIn("object 'Quad': adaptive subdivision is not supported", self.gather().notes[0])
+        quad.modifiers.new("Later", "TRIANGULATE")  # then it is not the last
+        self.assertEqual(self.gather().notes, [])
+
     def test_light_linking_is_noted(self):
         quad = self.add_quad()
         if not hasattr(quad, "light_linking"):

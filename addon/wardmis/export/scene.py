@@ -197,6 +197,10 @@ class _Gatherer:
                 continue
             self._note_light_linking(obj.original)
             if kind == "MESH":
+                if compat.is_subdivided_by_pixels(self.scene, obj.original):
+                    self.context.note(
+                        f"object '{obj.name}': adaptive subdivision is not supported; its modifier subdivides it as often as it says"
+                    )
                 if self.view_layer.use_solid:
                     self._place(obj, instance, "mesh", obj.data, self._mesh_geometry)
             elif kind == "CURVES":
