@@ -28,6 +28,7 @@ inline void addLobe(int version, Lobe l, Add&& add) {
   if (!gives(l.weight) && !(isGlass(l.kind) && gives(l.through))) return;
   const bool smooth = l.ax * l.ay <= (version == 3 ? 1e-7f : 2e-10f);
   const bool straight = smooth || std::abs(l.eta - 1) < 1e-4f;
+  if (straight) l.unseenFacets = l.refractsUp = false;
   switch (l.kind) {
     case LobeKind::kGgx:
     case LobeKind::kBeckmann:
@@ -68,7 +69,7 @@ inline Lobe roughLobe(int version, LobeKind kind, Rgb weight, float ax, float ay
 
 inline Lobe refractionLobe(int version, LobeKind kind, Rgb weight, float alpha, float eta) {
   Lobe l = roughLobe(version, kind, weight, alpha, alpha);
-  l.eta = eta, l.unseenFacets = true;
+  l.eta = eta, l.unseenFacets = true, l.refractsUp = version == 3;
   return l;
 }
 
@@ -113,6 +114,7 @@ inline void addGlossy(int version, Glossy distribution, Rgb weight, Rgb color, f
                                                                     : LobeKind::kGgx;
   Lobe l = roughLobe(version, kind, weight, ax, ay);
   if (kind == LobeKind::kAshikhminShirley) l.ax = std::max(l.ax, 1e-4f), l.ay = std::max(l.ay, 1e-4f);
+  l.byFirstAxis = version == 3 && kind == LobeKind::kBeckmann && ax != ay;
   if (distribution == Glossy::kMultiGgx) {
     l.masking = Masking::kCorrelated;
     l.weight *= compensate(reflectionAlbedo(tableRoughness(l), cosThetaO), compensated(version, color)).factor();
@@ -127,12 +129,13 @@ struct GlassLook {
   Fresnel fresnel = Fresnel::kBlended;
   Rgb f0, reflectionTint, transmissionTint;
   bool unseenFacets = true;  // not where Cycles follows light from facet to facet
+  bool refractsUp = false;
 };
 template <class Add>
 inline void addGlassLobe(int version, const GlassLook& look, Rgb weight, float alpha, float eta, Add&& add) {
   Lobe l = roughLobe(version, look.kind, weight * look.reflectionTint, alpha, alpha);
   l.masking = look.masking, l.fresnel = look.fresnel, l.f0 = look.f0, l.eta = eta;
-  l.through = weight * look.transmissionTint, l.unseenFacets = look.unseenFacets;
+  l.through = weight * look.transmissionTint, l.unseenFacets = look.unseenFacets, l.refractsUp = look.refractsUp;
   addLobe(version, l, add);
 }
 
@@ -148,7 +151,7 @@ inline void addGlass(int version, Glossy distribution, Rgb weight, Rgb color, fl
     weight *= compensate(glassAlbedo(roughness, cosThetaO, eta), compensated(version, color)).factor();
   } else if (version == 3) {  // Fresnel of the mean surface, and of its facets total internal reflection alone
     const float f = fresnelDielectric(cosThetaO, eta);
-    look.masking = Masking::kSeparable, look.fresnel = Fresnel::kNone;
+    look.masking = Masking::kSeparable, look.fresnel = Fresnel::kNone, look.refractsUp = true;
     look.reflectionTint = color * f, look.transmissionTint = color * std::max(1e-4f, 1 - f);
   }
   addGlassLobe(version, look, weight, alpha, eta, add);

@@ -71,10 +71,10 @@ inline Vec3<T> refractionHalf(Vec3<T> wi, Vec3<T> wo, T eta) {
   return dot(h, wo) < T(0) ? -h : h;
 }
 
-// True if a facet with normal h, facing up, does refract wo into wi.
+// True if a facet with normal h, facing up, does refract wo into wi. For eta < 1 that may lie above the mean surface.
 template <class T>
 inline bool refracts(Vec3<T> wi, Vec3<T> wo, Vec3<T> h) {
-  return wi.z < T(0) && wo.z > T(0) && h.z > T(0) && dot(h, wo) > T(0) && dot(h, wi) < T(0);
+  return wo.z > T(0) && h.z > T(0) && dot(h, wo) > T(0) && dot(h, wi) < T(0);
 }
 
 // d omega_m / d omega_i (eq. 17) times |wo.m|; h from refractionHalf(), with its length.
@@ -89,7 +89,7 @@ template <Distribution K, class T>
 inline MicrofacetValue<T> refractionValue(Masking masking, Vec3<T> wi, Vec3<T> wo, Vec3<T> h, T ax, T ay, T eta) {
   const T d = normalDensity<K>(h, T(1) / ax, T(1) / ay) * refractionJacobian(wi, wo, h, eta);
   const T si = masked<K>(wi, ax, ay), so = masked<K>(wo, ax, ay);
-  return {d * maskingOver(masking, -wi.z, si, wo.z, so), d / (wo.z + maskedExactly<K>(wo, ax, ay))};
+  return {d * maskingOver(masking, std::abs(wi.z), si, wo.z, so), d / (wo.z + maskedExactly<K>(wo, ax, ay))};
 }
 }  // namespace detail
 
@@ -123,10 +123,10 @@ inline T refractionLogPdf(Vec3<T> wi, Vec3<T> wo, T ax, T ay, T eta) {
          std::log(wo.z + maskedExactly<K>(wo, ax, ay));
 }
 
-// In total internal reflection wo mirrored at the mean surface, so above it, where this lobe is zero; it counts.
+// In total internal reflection along the horizon, where this lobe is zero; it counts.
 template <Distribution K, class T>
 inline Vec3<T> refractionSample(Vec3<T> wo, T ax, T ay, T eta, Vec2<T> u) {
-  Vec3<T> wi{-wo.x, -wo.y, wo.z};
+  Vec3<T> wi{T(1), T(0), T(0)};
   refracted(wo, sampleNormal<K>(wo, ax, ay, u), eta, wi);
   return wi;
 }

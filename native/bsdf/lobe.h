@@ -4,9 +4,13 @@
 //   evaluate(lobe, wi, wo)   f cos(theta_i) with the lobe's weight and colour, and the density of sample()
 //   sample(lobe, wo, u, v)   a direction; where evaluate() is zero there, its contribution is zero, and it counts.
 //                            v: of glass alone, chooses between what a facet reflects and what it lets pass
-//   unseen(lobe, wi, wo)     what Cycles' light samples alone find besides
+// In Cycles samples of a lobe do not always bring what its samples of lights find, nor have the density that it takes
+// them to have. That is part of what it shows:
+//   sampleDensities(lobe, wi, wo, pdf)   of its samples but strays, and what it counts; pdf: of evaluate()
+//   strays(lobe, wi, wo)     what they bring besides, of facets by which evaluate() has nothing
+//   unseen(lobe, wi, wo)     what samples of lights alone bring besides
 //   logPdf(lobe, wi, wo)     ln of the density, also where that underflows
-//   weight(lobe, wi, wo)     f cos / pdf at a sampled direction, without cancellation
+//   weight(lobe, wi, wo)     what a sample brings of the lobe itself, f cos / pdf as it counts it, without cancellation
 //   isDelta(kind)            one direction alone: evaluate() is zero, weight() is f cos / pdf as ever
 //   reflects(kind), transmits(kind)   wi lies above the surface, below it; of glass both
 #pragma once
@@ -65,6 +69,9 @@ struct Lobe {
   Masking masking = Masking::kCorrelated;
   uint8_t frame = 0;          // which normal and tangent, for whoever has several
   bool unseenFacets = false;  // has what unseen() tells
+  bool refractsUp = false;    // samples go where facets refract to above the mean surface, too: strays()
+  bool byFirstAxis = false;   // facets are drawn as if both axes had the first one's roughness
+  bool defended = false;      // glass: neither side is drawn less often than once in nine times
   Rgb weight{1, 1, 1}, through{1, 1, 1};
   float ax = 1, ay = 1;
   float eta = 1;  // of the side below over that above
@@ -86,12 +93,20 @@ struct LobeValue {
 };
 
 constexpr bool isDelta(LobeKind kind) { return kind >= LobeKind::kMirror; }
+constexpr bool isOfGgx(LobeKind kind) { return kind == LobeKind::kGgxRefraction || kind == LobeKind::kGgxGlass; }
+constexpr bool isOfBeckmann(LobeKind kind) {
+  return kind == LobeKind::kBeckmann || kind == LobeKind::kBeckmannRefraction || kind == LobeKind::kBeckmannGlass;
+}
 constexpr bool isGlass(LobeKind kind) { return kind == LobeKind::kGgxGlass || kind == LobeKind::kBeckmannGlass; }
 constexpr bool transmits(LobeKind kind) {
   return kind == LobeKind::kTranslucent || kind == LobeKind::kRoughTranslucent ||
          (kind >= LobeKind::kGgxRefraction && kind != LobeKind::kMirror);
 }
 constexpr bool reflects(LobeKind kind) { return !transmits(kind) || isGlass(kind); }
+// Whether any light leaves above the mean surface, or below.
+constexpr bool leaves(const Lobe& l, bool above) {
+  return above ? reflects(l.kind) || l.refractsUp : transmits(l.kind);
+}
 // Whether its rays are diffuse ones to Cycles; others are glossy.
 constexpr bool isMatte(LobeKind k) {
   return k <= LobeKind::kRoughTranslucent || (k >= LobeKind::kVelvet && k <= LobeKind::kFibres);
@@ -157,10 +172,15 @@ inline Vec3<T> reflectedColor(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
   if (l.fresnel == Fresnel::kNone) return rgb<T>(l.weight);
   return rgb<T>(l.weight) * reflectance(l, std::min(T(0.5) * length(wi + wo), T(1)));  // wo.h = |wi + wo|/2
 }
+// wo.h of what is refracted.
+template <class T>
+inline T refractedCosine(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
+  const Vec3<T> h = scaled(refractionHalf(wi, wo, T(l.eta)));
+  return std::min(dot(wo, h) / length(h), T(1));
+}
 template <class T>
 inline Vec3<T> refractedColor(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
-  const Vec3<T> h = scaled(refractionHalf(wi, wo, T(l.eta)));
-  return rgb<T>(l.weight) * transmittance(l, std::min(dot(wo, h) / length(h), T(1)));
+  return rgb<T>(l.weight) * transmittance(l, refractedCosine(l, wi, wo));
 }
 // What glass does to light at a facet: c = wo.m, reflect: the probability that sample() takes its reflection.
 template <class T>
@@ -178,26 +198,45 @@ template <class T>
 inline GlassFacet<T> glassFacet(const Lobe& l, T c) {
   const auto strength = [](Vec3<T> v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
   GlassFacet<T> f{rgb<T>(l.weight) * reflectance(l, c), rgb<T>(l.through) * transmittance(l, c), T(1)};
-  const T r = strength(f.reflected), t = strength(f.passed);
+  T r = strength(f.reflected), t = strength(f.passed);
+  if (l.defended && t > T(0)) {
+    const T least = T(0.125) * (r + t);
+    r = std::max(r, least), t = std::max(t, least);
+  }
   if (t > T(0)) f.reflect = r / (r + t);
   return f;
 }
 template <class T>
 inline GlassFacet<T> glassFacet(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
-  if (wi.z > T(0)) return glassFacet(l, std::min(T(0.5) * length(wi + wo), T(1)));
-  const Vec3<T> h = scaled(refractionHalf(wi, wo, T(l.eta)));
-  return glassFacet(l, std::min(dot(wo, h) / length(h), T(1)));
+  return glassFacet(l, wi.z > T(0) ? std::min(T(0.5) * length(wi + wo), T(1)) : refractedCosine(l, wi, wo));
+}
+// What facets let pass, of v, which is for a transmittance of 1.
+template <class T>
+inline LobeValue<T> passed(const Lobe& l, Vec3<T> wi, Vec3<T> wo, MicrofacetValue<T> v) {
+  if (!(v.pdf > T(0))) return {};
+  if (!isGlass(l.kind)) return {refractedColor(l, wi, wo) * v.fCos, v.pdf};
+  const GlassFacet<T> f = glassFacet(l, refractedCosine(l, wi, wo));
+  return {f.passed * v.fCos, v.pdf * (T(1) - f.reflect)};
+}
+// Of what is let pass; above the mean surface, too, where those are strays.
+template <Distribution K, class T>
+inline LobeValue<T> passedEvaluate(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
+  if (!(wi.z < T(0) || (wi.z > T(0) && l.refractsUp))) return {};
+  return passed(l, wi, wo, refractionEvaluate<K>(l.masking, wi, wo, T(l.ax), T(l.ay), T(l.eta)));
+}
+template <class T>
+inline LobeValue<T> withoutStrays(LobeValue<T> passed, Vec3<T> wi) {
+  return {wi.z < T(0) ? passed.fCos : Vec3<T>{}, passed.pdf};
 }
 template <Distribution K, class T>
 inline LobeValue<T> glassEvaluate(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
-  const T ax = T(l.ax), ay = T(l.ay);
-  const bool above = wi.z > T(0);
-  const MicrofacetValue<T> v = above ? microfacetEvaluate<K>(l.masking, wi, wo, ax, ay)
-                                     : refractionEvaluate<K>(l.masking, wi, wo, ax, ay, T(l.eta));
-  if (!(v.pdf > T(0))) return {};
+  LobeValue<T> sum = withoutStrays(passedEvaluate<K>(l, wi, wo), wi);
+  if (!(wi.z > T(0))) return sum;
+  const MicrofacetValue<T> v = microfacetEvaluate<K>(l.masking, wi, wo, T(l.ax), T(l.ay));
+  if (!(v.pdf > T(0))) return sum;
   const GlassFacet<T> f = glassFacet(l, wi, wo);
-  return above ? LobeValue<T>{f.reflected * v.fCos, v.pdf * f.reflect}
-               : LobeValue<T>{f.passed * v.fCos, v.pdf * (T(1) - f.reflect)};
+  sum.fCos += f.reflected * v.fCos, sum.pdf += v.pdf * f.reflect;
+  return sum;
 }
 template <Distribution K, class T>
 inline Vec3<T> glassWeight(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
@@ -217,7 +256,7 @@ inline Vec3<T> glassSample(const Lobe& l, Vec3<T> wo, Vec3<T> m, T v) {
     wi = mirrored(wo, m);
     return wi.z > T(0) ? wi : lost;
   }
-  return refracted(wo, m, T(l.eta), wi) && wi.z < T(0) ? wi : lost;
+  return refracted(wo, m, T(l.eta), wi) && (wi.z < T(0) || l.refractsUp) ? wi : lost;
 }
 template <class T>
 inline LobeValue<T> colored(Vec3<T> color, MicrofacetValue<T> v) {
@@ -279,26 +318,28 @@ LobeValue<T> evaluate(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
     }
     case LobeKind::kGgx:
       return colored(reflectedColor(l, wi, wo), microfacetEvaluate<Distribution::kGgx>(l.masking, wi, wo, ax, ay));
-    case LobeKind::kBeckmann:
-      return colored(reflectedColor(l, wi, wo), microfacetEvaluate<Distribution::kBeckmann>(l.masking, wi, wo, ax, ay));
+    case LobeKind::kBeckmann: {
+      MicrofacetValue<T> v = microfacetEvaluate<Distribution::kBeckmann>(l.masking, wi, wo, ax, ay);
+      if (l.byFirstAxis) v.pdf = microfacetEvaluate<Distribution::kBeckmann>(l.masking, wi, wo, ax, ax).pdf;
+      return colored(reflectedColor(l, wi, wo), v);
+    }
     case LobeKind::kThinTransmission:
       return colored(rgb<T>(l.weight), microfacetEvaluate<Distribution::kGgx>(l.masking, wi, wo, ax, ay));
     case LobeKind::kGgxRefraction:
-      return colored(refractedColor(l, wi, wo),
-                     refractionEvaluate<Distribution::kGgx>(l.masking, wi, wo, ax, ay, T(l.eta)));
+      return withoutStrays(passedEvaluate<Distribution::kGgx>(l, wi, wo), wi);
     case LobeKind::kBeckmannRefraction:
-      return colored(refractedColor(l, wi, wo),
-                     refractionEvaluate<Distribution::kBeckmann>(l.masking, wi, wo, ax, ay, T(l.eta)));
+      return withoutStrays(passedEvaluate<Distribution::kBeckmann>(l, wi, wo), wi);
     case LobeKind::kGgxGlass:
       return glassEvaluate<Distribution::kGgx>(l, wi, wo);
     case LobeKind::kBeckmannGlass:
       return glassEvaluate<Distribution::kBeckmann>(l, wi, wo);
     case LobeKind::kAshikhminShirley: {
       const T pdf = ashikhminPdf(wi, wo, ax, ay);
-      return {rgb<T>(l.weight) * (pdf * ashikhminWeight(wi, wo)), pdf};
+      return {rgb<T>(l.weight) * (pdf * ashikhminWeight(wi, wo)), ashikhminSampledPdf(wi, wo, ax, ay)};
     }
     case LobeKind::kClearcoat:
-      return colored(reflectedColor(l, wi, wo), clearcoatEvaluate(wi, wo, ax));
+      return {reflectedColor(l, wi, wo) * clearcoatEvaluate(wi, wo, ax).fCos,
+              microfacetEvaluate<Distribution::kGgx>(l.masking, wi, wo, ax, ax).pdf};
     case LobeKind::kFibres: {
       const T pdf = fibrePdf(wi, wo, T(l.a), T(l.b));
       return {rgb<T>(l.weight) * pdf, pdf};
@@ -308,20 +349,61 @@ LobeValue<T> evaluate(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
   }
 }
 
+template <class T>
+struct SampleDensities {
+  T pdf, counted;
+};
+template <class T>
+SampleDensities<T> sampleDensities(const Lobe& l, Vec3<T> wi, Vec3<T> wo, T pdf) {
+  using namespace detail;
+  constexpr Distribution kBeckmann = Distribution::kBeckmann;
+  const T ax = T(l.ax), ay = T(l.ay);
+  if (l.kind == LobeKind::kClearcoat) return {pdf, clearcoatEvaluate(wi, wo, ax).pdf};
+  if (l.kind == LobeKind::kAshikhminShirley) return {ashikhminPdf(wi, wo, ax, ay), ashikhminPdf(wi, wo, ax, ay)};
+  if (l.refractsUp && wi.z > T(0)) {
+    if (!isGlass(l.kind)) return {T(0), T(0)};
+    pdf = (isOfGgx(l.kind) ? microfacetEvaluate<Distribution::kGgx>(l.masking, wi, wo, ax, ay)
+                           : microfacetEvaluate<kBeckmann>(l.masking, wi, wo, ax, ay))
+              .pdf *
+          glassFacet(l, wi, wo).reflect;
+  }
+  if (!isOfBeckmann(l.kind)) return {pdf, pdf};
+  const T alike = l.byFirstAxis ? microfacetEvaluate<kBeckmann>(l.masking, wi, wo, ax, ay).pdf : pdf;
+  return {pdf, alike / (T(1) + microfacetSurplus<kBeckmann>(wo, ax, ay))};
+}
+
+// alone: Cycles does not ask the lobe itself what else it has along such a sample.
+template <class T>
+struct Stray {
+  Vec3<T> fCos;
+  T pdf, counted;
+  bool alone;
+};
+template <class T, class Add>
+void strays(const Lobe& l, Vec3<T> wi, Vec3<T> wo, Add&& add) {
+  using namespace detail;
+  if (l.kind == LobeKind::kAshikhminShirley) {
+    ashikhminStrays(wi, wo, T(l.ax), T(l.ay), [&](T fCos, T pdf, T counted) {
+      add(Stray<T>{rgb<T>(l.weight) * fCos, pdf, counted, true});
+    });
+  } else if (l.refractsUp && wi.z > T(0)) {
+    const LobeValue<T> v = isOfGgx(l.kind) ? passedEvaluate<Distribution::kGgx>(l, wi, wo)
+                                           : passedEvaluate<Distribution::kBeckmann>(l, wi, wo);
+    if (v.pdf > T(0)) add(Stray<T>{v.fCos, v.pdf, v.pdf, false});
+  }
+}
+
 // What Cycles adds to a lobe that refracts where no facet does: f cos, which its light samples alone find, and the
 // density that it counts for it. Lamps that graze rough glass are brighter for it.
 template <class T>
 LobeValue<T> unseen(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
   using namespace detail;
   if (!l.unseenFacets) return {};
-  const bool ggx = l.kind == LobeKind::kGgxRefraction || l.kind == LobeKind::kGgxGlass;
   const T ax = T(l.ax), ay = T(l.ay), eta = T(l.eta);
-  const MicrofacetValue<T> v = ggx ? unseenRefraction<Distribution::kGgx>(l.masking, wi, wo, ax, ay, eta)
+  const MicrofacetValue<T> v = isOfGgx(l.kind)
+                                   ? unseenRefraction<Distribution::kGgx>(l.masking, wi, wo, ax, ay, eta)
                                    : unseenRefraction<Distribution::kBeckmann>(l.masking, wi, wo, ax, ay, eta);
-  if (!(v.fCos > T(0))) return {};
-  if (!isGlass(l.kind)) return colored(refractedColor(l, wi, wo), v);
-  const GlassFacet<T> f = glassFacet(l, wi, wo);
-  return {f.passed * v.fCos, v.pdf * (T(1) - f.reflect)};
+  return v.fCos > T(0) ? passed(l, wi, wo, v) : LobeValue<T>{};
 }
 
 template <class T>
@@ -337,7 +419,7 @@ Vec3<T> sample(const Lobe& l, Vec3<T> wo, Vec2<T> u, T v) {
     case LobeKind::kGgx:
       return microfacetSample<Distribution::kGgx>(wo, ax, ay, u);
     case LobeKind::kBeckmann:
-      return microfacetSample<Distribution::kBeckmann>(wo, ax, ay, u);
+      return microfacetSample<Distribution::kBeckmann>(wo, ax, l.byFirstAxis ? ax : ay, u);
     case LobeKind::kThinTransmission:
       return flipped(microfacetSample<Distribution::kGgx>(wo, ax, ay, u));
     case LobeKind::kGgxRefraction:
@@ -351,7 +433,7 @@ Vec3<T> sample(const Lobe& l, Vec3<T> wo, Vec2<T> u, T v) {
     case LobeKind::kAshikhminShirley:
       return ashikhminSample(wo, ax, ay, u);
     case LobeKind::kClearcoat:
-      return clearcoatSample(wo, ax, u);
+      return microfacetSample<Distribution::kGgx>(wo, ax, ax, u);
     case LobeKind::kFibres:
       return fibreSample(wo, T(l.a), T(l.b), u);
     case LobeKind::kMirror:
@@ -384,11 +466,14 @@ T logPdf(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
     case LobeKind::kGgx:
       return microfacetLogPdf<Distribution::kGgx>(wi, wo, ax, ay);
     case LobeKind::kBeckmann:
-      return microfacetLogPdf<Distribution::kBeckmann>(wi, wo, ax, ay);
+      return microfacetLogPdf<Distribution::kBeckmann>(wi, wo, ax, l.byFirstAxis ? ax : ay);
     case LobeKind::kBeckmannRefraction:
+      if (!leaves(l, wi.z > T(0))) return -std::numeric_limits<T>::infinity();
       return refractionLogPdf<Distribution::kBeckmann>(wi, wo, ax, ay, T(l.eta));
-    case LobeKind::kAshikhminShirley:
-      return ashikhminLogPdf(wi, wo, ax, ay);
+    case LobeKind::kAshikhminShirley: {
+      const T pdf = ashikhminSampledPdf(wi, wo, ax, ay);
+      return pdf > std::numeric_limits<T>::min() ? std::log(pdf) : ashikhminLogPdf(wi, wo, ax, ay);
+    }
     default:
       return std::log(evaluate(l, wi, wo).pdf);
   }
@@ -399,7 +484,15 @@ Vec3<T> weight(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
   using namespace detail;
   const T ax = T(l.ax), ay = T(l.ay);
   const Vec3<T> white = rgb<T>(l.weight);
-  if (!(wo.z > T(0)) || !(wi.z < T(0) ? transmits(l.kind) : reflects(l.kind))) return {};
+  if (!(wo.z > T(0)) || !leaves(l, !(wi.z < T(0)))) return {};
+  if (l.byFirstAxis || (wi.z > T(0) && (l.kind == LobeKind::kAshikhminShirley || l.refractsUp))) {
+    const LobeValue<T> v = evaluate(l, wi, wo);
+    if (!(v.pdf > std::numeric_limits<T>::min())) return {};
+    const SampleDensities<T> d = sampleDensities(l, wi, wo, v.pdf);
+    Vec3<T> sum = d.counted > T(0) ? v.fCos * (d.pdf / d.counted) : Vec3<T>{};
+    strays(l, wi, wo, [&](const Stray<T>& stray) { sum += stray.fCos; });
+    return sum * (T(1) / v.pdf);
+  }
   if (isMirrored(l.kind)) wi = flipped(wi);
   if (isDiffuse(l.kind)) return wi.z > T(0) ? diffuseF(l, wi, wo) * kPi<T> : Vec3<T>{};
   switch (l.kind) {
@@ -423,10 +516,8 @@ Vec3<T> weight(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
       return glassWeight<Distribution::kGgx>(l, wi, wo);
     case LobeKind::kBeckmannGlass:
       return glassWeight<Distribution::kBeckmann>(l, wi, wo);
-    case LobeKind::kAshikhminShirley:
-      return white * ashikhminWeight(wi, wo);
     case LobeKind::kClearcoat:
-      return reflectedColor(l, wi, wo) * clearcoatWeight(wi, wo);
+      return reflectedColor(l, wi, wo) * clearcoatWeight(wi);
     case LobeKind::kMirror:
       return white * reflectance(l, wo.z);
     case LobeKind::kSharpRefraction:

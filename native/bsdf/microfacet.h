@@ -89,12 +89,21 @@ inline MicrofacetValue<T> microfacetEvaluate(Masking masking, Vec3<T> wi, Vec3<T
   return {d * maskingOver(masking, wi.z, si, wo.z, so), d / (wo.z + maskedExactly<K>(wo, ax, ay))};
 }
 
-// f_s cos / pdf of a sampled direction: D cancels.
+// How much more than f_s Cycles' samples of visible normals bring, as a share of it: it divides by the density that the
+// masking of f_s would have, which of Beckmann is an approximation.
+template <Distribution K, class T>
+inline T microfacetSurplus(Vec3<T> wo, T ax, T ay) {
+  if constexpr (K == Distribution::kGgx) return T(0);
+  const T so = masked<K>(wo, ax, ay), exact = maskedExactly<K>(wo, ax, ay);
+  return (so - exact) / (wo.z + exact);
+}
+
+// f_s cos and the surplus over pdf of a sampled direction: D cancels.
 template <Distribution K, class T>
 inline T microfacetWeight(Masking masking, Vec3<T> wi, Vec3<T> wo, T ax, T ay) {
   if (!(wi.z > T(0)) || !(wo.z > T(0))) return T(0);
   const T si = masked<K>(wi, ax, ay), so = masked<K>(wo, ax, ay);
-  return maskingOver(masking, wi.z, si, wo.z, so) * (wo.z + maskedExactly<K>(wo, ax, ay));
+  return maskingOver(masking, wi.z, si, wo.z, so) * (wo.z + so);
 }
 
 // ln of normalDensity(), also where that underflows.

@@ -61,35 +61,22 @@ inline T gtr1Norm(T l) {
 }
 inline constexpr float kClearcoatMasking = 0.25f;  // alpha of its masking, whatever its roughness
 
-// f_s cos of a mirror layer, and the density of sampling its normals by D cos.
+// f_s cos of a mirror layer, and the density that Cycles takes its samples to have, G1 D/(4 cos(theta_o)). They are
+// those of GGX with the same alpha.
 template <class T>
 inline MicrofacetValue<T> clearcoatEvaluate(Vec3<T> wi, Vec3<T> wo, T alpha) {
   if (!(wi.z > T(0)) || !(wo.z > T(0))) return {T(0), T(0)};
   const Vec3<T> h = scaled(wi + wo);
   const T h2 = dot(h, h), q = (h.x * h.x + h.y * h.y + square(alpha * h.z)) / h2;  // sin^2 + alpha^2 cos^2
-  const T d = gtr1Norm(T(-2) * std::log(alpha)) / (kPi<T> * q), g = T(kClearcoatMasking);
+  const T d = T(0.25) * gtr1Norm(T(-2) * std::log(alpha)) / (kPi<T> * q), g = T(kClearcoatMasking);
   const T si = masked<Distribution::kGgx>(wi, g, g), so = masked<Distribution::kGgx>(wo, g, g);
-  // D cos(theta_h)/(4 wo.h) with wo.h = |wi + wo|/2
-  const T full = length(wi + wo);
-  return {T(0.25) * d * maskingOver(Masking::kSeparable, wi.z, si, wo.z, so),
-          T(0.5) * d * ((wi.z + wo.z) / full) / full};
+  return {d * maskingOver(Masking::kSeparable, wi.z, si, wo.z, so), d / (wo.z + so)};
 }
+// f_s cos over that density.
 template <class T>
-inline T clearcoatWeight(Vec3<T> wi, Vec3<T> wo) {
-  if (!(wi.z > T(0)) || !(wo.z > T(0))) return T(0);
-  const T g = T(kClearcoatMasking), full = length(wi + wo);
-  const T si = masked<Distribution::kGgx>(wi, g, g), so = masked<Distribution::kGgx>(wo, g, g);
-  return T(0.5) * maskingOver(Masking::kSeparable, wi.z, si, wo.z, so) * full * (full / (wi.z + wo.z));
-}
-template <class T>
-inline Vec3<T> clearcoatSample(Vec3<T> wo, T alpha, Vec2<T> u) {
-  const T l = T(-2) * std::log(alpha);
-  const T tan2 =
-      l > T(1e-6) ? alpha * alpha * std::expm1(u.x * l) / -std::expm1(-(T(1) - u.x) * l) : u.x / (T(1) - u.x);
-  const T r = std::sqrt(tan2);
-  T s, c;
-  sincos2Pi(u.y, s, c);
-  return mirrored(wo, Vec3<T>{r * c, r * s, T(1)});
+inline T clearcoatWeight(Vec3<T> wi) {
+  const T g = T(kClearcoatMasking);
+  return wi.z > T(0) ? wi.z / (wi.z + masked<Distribution::kGgx>(wi, g, g)) : T(0);
 }
 
 }  // namespace wardmis

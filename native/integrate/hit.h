@@ -378,16 +378,14 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
         add(t, own, ahead, f, radiance, p, visibility, set);
         return;
       }
-      const float byLight = lit.share(p[kLight], s.strength());
+      const float byLight = lit.share(lit.density, p[kLight], s.strength());
       if (moved > 0) {  // what light samples see from elsewhere is theirs alone
         if (t == kLight)
           add(t, kByLight, ahead, otherwise ? lit.same : f, radiance * byLight, p, visibility, set);
         else
           add(t, kBySurface, ahead, f, radiance * (1 - byLight), p, visibility, set);
       } else {
-        Values same;
-        for (size_t i = 0; i < same.size(); ++i) same[i] = f[i] * (1 - byLight) + lit.same[i] * byLight;
-        add(t, kAny, ahead, same, radiance, p, visibility, set);
+        add(t, kAny, ahead, lit.blended(f, p[kLight], s.strength()), radiance, p, visibility, set);
       }
       if (t == kLight && otherwise) add(t, kByLight, !ahead, lit.other, radiance * byLight, p, visibility, set);
     };

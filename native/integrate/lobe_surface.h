@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <numeric>
 
 #include "bsdf/bump_shadow.h"
@@ -18,17 +19,35 @@ namespace wardmis {
 
 // f cos of what samples of lights bring, by technique, where it is not what samples of the surface bring, as in Cycles:
 // of lobes to whose normal light leaves on the same side as to the face, and on the other. Among
-// them what unseen() of lobe.h tells.
+// them what unseen() of lobe.h tells. `strays`: what of the samples of the surface is none of it, each with a density
+// of its own.
 template <size_t K>
 struct LitOtherwise {
   std::array<Rgb, K - 1> same{}, other{};
-  float density = 0;  // of all lobes, wherever they may leave, times their strengths
+  struct Stray {
+    Rgb f;
+    float density;
+    uint8_t slot;
+  };
+  static constexpr int kMostStrays = 4;
+  Stray stray[kMostStrays];
+  int strays = 0;
+  float density = 0;  // of all lobes, wherever they may leave, times their strengths; as Cycles counts it
   bool any = false;
   // The part of light that light samples, of density `light`, bring where surface samples of this strength find it,
   // too: Cycles' power heuristic, which is all that is left where it lets the latter find nothing.
-  float share(float light, float strength) const {
+  static float share(float density, float light, float strength) {
     const float ratio = density / (strength * light);
     return density > 0 ? 1 / (1 + ratio * ratio) : 1;
+  }
+  // Of light along a direction that both find, what belongs to each integrand; f: of surface samples, all of it.
+  std::array<Rgb, K - 1> blended(const std::array<Rgb, K - 1>& f, float light, float strength) const {
+    const float byLight = share(density, light, strength);
+    std::array<Rgb, K - 1> sum;
+    for (size_t i = 0; i < sum.size(); ++i) sum[i] = f[i] * (1 - byLight) + same[i] * byLight;
+    for (int k = 0; k < strays; ++k)
+      sum[stray[k].slot] += stray[k].f * (byLight - share(stray[k].density, light, strength));
+    return sum;
   }
 };
 
@@ -42,9 +61,10 @@ class LobeSurface {
   float holdout = 0;         // how much of it is a hole for the camera
   Rgb transparent{0, 0, 0};  // of the light that goes straight through, what arrives
 
-  // frame: the surface's own; wo in world space, unit.
-  void begin(const Framef& frame, Vec3f wo) {
-    count_ = 0, frames_ = 0;
+  // frame: the surface's own; wo in world space, unit; mixes: see straight(); defended: no lobe is drawn less often
+  // than once in nine times.
+  void begin(const Framef& frame, Vec3f wo, bool mixes = false, bool defended = false) {
+    count_ = 0, frames_ = 0, mixes_ = mixes, defended_ = defended, least_ = 0;
     transparent = {0, 0, 0}, diffuse_ = {0, 0, 0}, holdout = 0;
     wo_ = wo;
     addFrame(frame);
@@ -73,6 +93,7 @@ class LobeSurface {
     } else if (count_ < kMostLobes) {
       lobe_[count_] = lobe;
       if (!own) lobe_[count_].frame = 0;
+      lobe_[count_].defended = defended_ && lobe.refractsUp;
       ++count_;
     }
   }
@@ -88,6 +109,13 @@ class LobeSurface {
       if (byCosine(lobe_[i])) continue;
       ++(isDelta(lobe_[i].kind) ? sharp : rough);
       ++of[static_cast<size_t>(classOf(lobe_[i].kind))];
+    }
+    if (defended_) {
+      float sum = strength_[kCosine] + luminance(transparent);
+      for (int i = 0; i < count_; ++i) sum += strength[i];
+      least_ = 0.125f * sum;
+      for (int i = 0; i < count_; ++i) strength[i] = std::max(strength[i], least_);
+      if (strength_[kCosine] > 0) strength_[kCosine] = std::max(strength_[kCosine], least_);
     }
     bool byClass = numbers.byClass;
     for (size_t c = 0; c < kLobeClasses; ++c) byClass = byClass && of[c] <= numbers.count[c];
@@ -111,6 +139,21 @@ class LobeSurface {
       transmission_[slot] |= matte ? kSeenByTranslucence : kSeenByTransmission;
     }
     for (int i = 0; i < count_; ++i) share_[i] = strength_[slot_[i]] > 0 ? strength[i] / strength_[slot_[i]] : 1;
+  }
+
+  // What rays find of the light that goes straight through. Cycles 3.4 takes the one direction for one among those of
+  // the other lobes, and adds their densities and their light to it.
+  Rgb straight() const {
+    if (!mixes_ || isBlack(transparent)) return transparent;
+    LitOtherwise<K> lit;
+    std::array<Rgb, K - 1> f{};
+    Fractions<K> p{};
+    const Vec3f wo = frame_[0].toLocal(wo_);
+    evaluate(-wo, wo, false, f, p, lit);
+    Rgb all = transparent;
+    for (size_t i = 0; i < f.size(); ++i) all += lit.same[i] + lit.other[i];
+    const float own = std::max(luminance(absolute(transparent)), least_);
+    return all * (own / (own + lit.density));
   }
 
   bool hasLobe(size_t slot) const { return strength_[slot] > 0; }
@@ -165,36 +208,73 @@ class LobeSurface {
   template <class T>
   void evaluate(Vec3<T> wi, Vec3<T> wo, bool ahead, std::array<Rgb, K - 1>& f, Fractions<K>& p,
                 LitOtherwise<K>& lit) const {
+    struct {
+      Rgb f;
+      float density;  // as Cycles counts it, times the strength
+    } part[kMostLobes + 1];
+    struct {
+      Rgb f;
+      float pdf, counted;  // times the strength
+      int without;         // the part that is not asked there, or none
+    } own[LitOtherwise<K>::kMostStrays];
+    int parts = 0;
     const float cosine = std::max(static_cast<float>(wi.z), 0.0f) * (1 / kPi<float>);
     (ahead ? f : lit.other)[kCosine] = diffuse_ * (cosine * left(static_cast<float>(wi.z)));
     p[kCosine] = hasDiffuse() && ahead ? cosine : 0;
     lit.same[kCosine] = f[kCosine];
     lit.density = strength_[kCosine] * cosine;
     lit.any = !ahead && hasDiffuse() && cosine > 0;
+    part[parts++] = {f[kCosine] + lit.other[kCosine], lit.density};
+    float drawn = ahead ? lit.density : 0, counted = drawn;  // of samples that leave there, and as Cycles has it
     for (int i = 0; i < count_; ++i) {
       const Lobe& l = lobe_[i];
       if (isDelta(l.kind)) continue;
       const Vec3<T> w = local(l, wi);
       const bool above = w.z > T(0);
-      if (!(above ? wardmis::reflects(l.kind) : w.z < T(0) && wardmis::transmits(l.kind))) continue;
-      LobeValue<T> v = wardmis::evaluate(l, w, local(l, wo));
+      if (!(w.z != T(0)) || !leaves(l, above)) continue;
+      const Vec3<T> view = local(l, wo);
+      LobeValue<T> v = wardmis::evaluate(l, w, view);
       const bool seen = v.pdf > T(0);
-      if (!seen) v = unseen(l, w, local(l, wo));
+      if (!seen) v = unseen(l, w, view);
       if (!(v.pdf > T(0))) continue;
-      const Rgb all{static_cast<float>(v.fCos.x), static_cast<float>(v.fCos.y), static_cast<float>(v.fCos.z)};
-      const Rgb value = all * left(static_cast<float>(w.z));
+      const SampleDensities<T> d = seen ? sampleDensities(l, w, view, v.pdf) : SampleDensities<T>{T(0), v.pdf};
+      const float strength = slot_[i] == kCosine ? 0 : strength_[slot_[i]] * share_[i],
+                  density = strength * static_cast<float>(d.counted), reached = left(static_cast<float>(w.z));
+      const Rgb value = single(v.fCos) * reached;
       const BumpShadow shadow = bump_[l.frame] == 0 ? BumpShadow{1, 1}
                                                     : bumpShadow(bump_[l.frame], l.kind, static_cast<float>(wi.z),
                                                                  ownCosine_[l.frame], static_cast<float>(w.z));
       const bool sampled = seen && above == ahead;
-      if (sampled) f[slot_[i]] += value * shadow.bySurface;
-      if (slot_[i] != kCosine) {
-        const float density = share_[i] * static_cast<float>(v.pdf);
-        if (sampled) p[slot_[i]] += density;
-        lit.density += strength_[slot_[i]] * density;
+      if (sampled) {
+        f[slot_[i]] += value * shadow.bySurface;
+        if (slot_[i] != kCosine) p[slot_[i]] += share_[i] * static_cast<float>(v.pdf);
+        drawn += strength * static_cast<float>(d.pdf), counted += density;
+        strays(l, w, view, [&](const Stray<T>& s) {
+          const float pdf = strength * static_cast<float>(s.pdf);
+          if (lit.strays == lit.kMostStrays || !(pdf > std::numeric_limits<float>::min())) return;
+          own[lit.strays] = {single(s.fCos) * reached, pdf, strength * static_cast<float>(s.counted),
+                             s.alone ? parts : -1};
+          lit.stray[lit.strays++].slot = slot_[i];
+        });
       }
+      part[parts++] = {value, density};
+      lit.density += density;
       (above == ahead ? lit.same : lit.other)[slot_[i]] += value * shadow.byLight;
       lit.any = lit.any || shadow.byLight != (sampled ? shadow.bySurface : 0);
+    }
+    // a sample brings what all lobes have there, over the density that is counted for all
+    if (counted > 0 && drawn != counted) {
+      for (Rgb& value : f) value = value * (drawn / counted);
+      lit.any = true;
+    }
+    for (int k = 0; k < lit.strays; ++k) {
+      typename LitOtherwise<K>::Stray& s = lit.stray[k];
+      s.f = own[k].f * (own[k].counted / own[k].pdf), s.density = own[k].counted;
+      for (int i = 0; i < parts; ++i)
+        if (i != own[k].without) s.f += part[i].f, s.density += part[i].density;
+      s.f = s.f * (own[k].pdf / s.density);
+      f[s.slot] += s.f;
+      lit.any = true;
     }
   }
 
@@ -219,7 +299,7 @@ class LobeSurface {
     const Vec3<T> wi = wardmis::sample(l, local(l, wo), u, T(left));
     from = {chosen, true, wi.z < T(0)};
     from.glossy = !isMatte(l.kind);
-    from.lost = !(wi.z > T(0) ? wardmis::reflects(l.kind) : wi.z < T(0) && wardmis::transmits(l.kind));
+    from.lost = !(wi.z != T(0)) || !leaves(l, wi.z > T(0));
     return global(l, wi);
   }
   // Of a sharp lobe's sample: f cos / pdf, the choice of the lobe included.
@@ -227,13 +307,16 @@ class LobeSurface {
   Rgb weight(const Sample& from, Vec3<T> wi, Vec3<T> wo) const {
     const Lobe& l = lobe_[from.lobe];
     const Vec3<T> out = local(l, wi), w = wardmis::weight(l, out, local(l, wo));
-    return Rgb{static_cast<float>(w.x), static_cast<float>(w.y), static_cast<float>(w.z)} *
-           (left(static_cast<float>(out.z)) / share_[from.lobe]);
+    return single(w) * (left(static_cast<float>(out.z)) / share_[from.lobe]);
   }
 
  private:
   static Component componentOf(const Lobe& l, bool ahead) {
     return isMatte(l.kind) ? Component::kDiffuse : ahead ? Component::kGlossy : Component::kTransmission;
+  }
+  template <class T>
+  static Rgb single(Vec3<T> v) {
+    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
   }
   float left(float cosine) const { return terminator > 1 && cosine > 0 ? leftAtTerminator(terminator, cosine) : 1; }
 
@@ -281,6 +364,8 @@ class LobeSurface {
   Rgb diffuse_{0, 0, 0};  // Lambert's, about frame 0
   Vec3f wo_;
   int count_, frames_;
+  bool mixes_, defended_;
+  float least_;  // strength of any lobe
   std::array<Lobe, kMostLobes> lobe_;
   std::array<uint8_t, kMostLobes> slot_;
   std::array<float, kMostLobes> share_;

@@ -72,7 +72,7 @@ Hit trace(const RenderScene& world, Ray& ray, uint32_t key, Rgb& weight, Along&&
         weight = weight / (1 - q);
         return hit;
       }
-      weight = weight * x.surface.transparent / q;
+      weight = weight * x.surface.straight() / q;
       ray.tMin = detail::behind(x, ray.direction, hit.t);
       ray.left = x.primitive;
       ray.path = ray.path.passed();

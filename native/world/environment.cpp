@@ -30,6 +30,13 @@ Vec2f mirrorBall(Vec3f d) {
   return {0.5f + 0.5f * d.y * scale, 0.5f + 0.5f * d.x * scale};
 }
 
+// What directions are drawn by: as in Cycles all channels alike, since light that its samples of lights alone find
+// (lobe.h) is weighed by its density.
+constexpr float drawnAs(Rgb c) {
+  const Rgb a = absolute(c);
+  return (a.x + a.y + a.z) / 3;
+}
+
 constexpr int kMaxTableWidth = 2048, kMaxTableHeight = 1024;
 
 }  // namespace
@@ -107,7 +114,7 @@ void Environment::tabulateProgram() {
       const double phi = kPi<double> - 2 * kPi<double> * double(i) / double(columns);
       const Vec3f d =
           normalize(fromImage({r * static_cast<float>(std::cos(phi)), r * static_cast<float>(std::sin(phi)), z}));
-      const float value = strength(radiance(d));
+      const float value = drawnAs(radiance(d));
       grid[j * columns + i] = std::isfinite(value) ? value : 0;
     }
   });
@@ -134,7 +141,7 @@ void Environment::tabulateProgram() {
 void Environment::tabulateImage() {
   const World& world = world_;
   const Scene& scene = scene_;
-  // The table's cells hold the image's luminance, taken over each cell from a grid of looked-up values, so that the
+  // The table's cells hold the image's radiance, taken over each cell from a grid of looked-up values, so that the
   // density is positive wherever the interpolated image is.
   const Image& image = scene.images[static_cast<size_t>(scene.textures[static_cast<size_t>(world.texture)].image)];
   image_ = &image;
@@ -164,7 +171,7 @@ void Environment::tabulateImage() {
                             static_cast<float>(width_);
             const float v = (static_cast<float>(y) + (static_cast<float>(j)) / static_cast<float>(subY)) /
                             static_cast<float>(height_);
-            sum += strength(sampleRgb(scene, use, uvOf(u, v)) * world.radiance);
+            sum += drawnAs(sampleRgb(scene, use, uvOf(u, v)) * world.radiance);
           }
         const Vec3f middle = inCell(static_cast<uint32_t>(x), static_cast<uint32_t>(y), 0.5f, 0.5f);
         const float stretched = stretch(toImage(normalize(fromImage(middle))));

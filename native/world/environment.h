@@ -19,7 +19,7 @@ class Environment {
   // Worth sampling by itself. A constant sky is not: the techniques of the surface cover it evenly; nor is one that no
   // surface sees.
   bool sampled() const { return !table_.empty() || oneMinusCos_ > 0; }
-  // Mean radiance over the sphere times 4 pi, by luminance.
+  // Mean radiance over the sphere times 4 pi: of what directions are drawn by the mean of the channels, else luminance.
   float integral() const { return integral_; }
 
   Rgb radiance(Vec3f direction, const SkyRay& ray = {}) const;

@@ -186,7 +186,8 @@ def evaluate(lobe: dict, wi: Vec, wo: Vec) -> tuple[list[mpf], mpf]:
     a2, quarter = mpf(lobe["ax"]) ** 2, mpf(1) / 4
     d = (a2 - 1) / (pi * log(a2) * (1 + (a2 - 1) * h[2] ** 2))
     g = 1 / ((1 + smith("ggx", wi, quarter, quarter)) * (1 + smith("ggx", wo, quarter, quarter)))
-    return [d * g / (4 * wo[2]) * f for f in facet(lobe, dot(wo, h))], d * h[2] / (4 * dot(wo, h))
+    drawn = {"kind": "ggx", "ax": lobe["ax"], "ay": lobe["ax"]}  # its samples are those of GGX
+    return [d * g / (4 * wo[2]) * f for f in facet(lobe, dot(wo, h))], microfacet(drawn, wi, wo)[1]
 
 
 def direction(cos: float, phi: float) -> list[float]:

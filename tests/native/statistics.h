@@ -144,6 +144,7 @@ Fit chiSquareHemisphere(Sample&& sample, Pdf&& pdf, int count, int cells) {
   const auto phi = [&](Vec3<double> d) { return std::atan2(c * d.y - s * d.x, c * d.x + s * d.y); };
   for (const Vec3<double>& d : others)
     if (d.z > 0) zs.push_back(d.z), phis.push_back(phi(d));
+  if (zs.size() < static_cast<size_t>(cells)) return {1, 0};  // nothing there
   const auto point = [&]() -> std::optional<Vec2<double>> {
     const Vec3<double> d = sample();
     if (!(d.z > 0)) return std::nullopt;

@@ -13,10 +13,7 @@ from typing import Any
 EXTENSION = "WARDMIS_scene"
 WARD = "WardMIS shows Ward's reflection, Cycles Beckmann's"
 WALK = "WardMIS shows GGX whose lost energy is added evenly, Cycles before 4.0 light that walks from facet to facet"
-COAT = "WardMIS shows the clearcoat's own light, Cycles before 4.0 draws its directions by another density than it divides by"
 BECKMANN = "WardMIS shows anisotropic Beckmann reflection, of which Cycles before 4.0 draws both axes by one roughness"
-ASHIKHMIN = "WardMIS shows Ashikhmin and Shirley's reflection, to which Cycles adds some at grazing angles by half vectors turned over"
-STRAIGHT = "WardMIS shows all light that goes straight through, of which Cycles before 4.0 loses some where a surface also refracts roughly"
 
 
 @dataclass
@@ -48,21 +45,9 @@ def _differences(surface: dict[str, Any]) -> set[str]:
         found |= {WARD} if closure["type"] == "ward" else set()
         distribution = closure.get("distribution")
         found |= {WALK} if distribution == "multi-ggx" and closure.get("version") == 3 else set()
-        coat = closure.get("clearcoat", {})
-        found |= {COAT} if coat.get("value", 0) != 0 else set()
         one_axis = closure.get("alphaX") == closure.get("alphaY")
         found |= {BECKMANN} if distribution == "beckmann" and closure.get("version") == 3 and not one_axis else set()
-        found |= {ASHIKHMIN} if distribution == "ashikhmin-shirley" else set()
-    if any(closure["type"] == "transparent" for closure in surface.get("closures", [])):
-        found |= {STRAIGHT} if any(map(_refracts_roughly, surface["closures"])) else set()
     return found
-
-
-def _refracts_roughly(closure: dict[str, Any]) -> bool:
-    """In Blender 3.4."""
-    amount = {"glass": "alpha", "refraction": "alpha", "principled": "transmission"}.get(closure["type"], "")
-    given = closure.get(amount, {})
-    return closure.get("version") == 3 and (given.get("value", 0) != 0 or len(given) > 1)
 
 
 def _named(names: list[str]) -> str:

@@ -110,12 +110,9 @@ Vec integrals(const std::vector<Lobe>& lobes, Vec wo) {
 double allowed(int version, const json& s) {
   const json& inputs = s.contains("inputs") ? s["inputs"] : s;
   const std::string node = s["node"], distribution = inputs.value("distribution", "GGX");
-  // half vectors turned away from the view are turned over, and the old cosine is kept: too much light at grazing views
-  if (distribution == "ASHIKHMIN_SHIRLEY") return s["roughness"] < 0.4 ? 0.002 : 0.6;
+  if (distribution == "ASHIKHMIN_SHIRLEY") return 0.006;  // the grid is coarse for strays
   if (version == 3) {
-    // sampled as if isotropic
-    if (distribution == "BECKMANN" && s.value("anisotropy", 0.0) != 0) return 3;
-    // normals of GGX are drawn where the density is GTR1's
+    // of several lobes, whose densities are weighed against each other in a surface
     if (inputs.contains("clearcoat")) return 0.15;
     // a walk from facet to facet, not a compensated lobe; light refracted to above from inside is not lost in it
     if (distribution == "MULTI_GGX") return inputs.value("ior", 1.5) < 1 ? 0.3 : 0.11;

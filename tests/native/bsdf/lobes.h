@@ -63,6 +63,7 @@ inline std::vector<Lobe> roughLobes() {
       lobe(LobeKind::kBeckmann, 0.5f, 0.15f, 1, none, together),
       lobe(LobeKind::kBeckmann, 1, 1, 1.5f, blended, together),
       lobe(LobeKind::kAshikhminShirley, 0.3f, 0.1f, 1, none, together),
+      lobe(LobeKind::kAshikhminShirley, 1, 1, 1, none, together),
       lobe(LobeKind::kClearcoat, 0.09f, 0.09f, 1.5f, blended, apart),
       lobe(LobeKind::kClearcoat, 1, 1, 1.5f, blended, apart),
       lobe(LobeKind::kGgxRefraction, 0.2f, 0.2f, 1.5f, blended, together),
@@ -90,6 +91,13 @@ inline std::vector<Lobe> roughLobes() {
     const auto model = OrenNayar<float>::of(0.7f);
     all[with(kind, model.a, model.b)].f0 = {0, 0.002f, 0.05f};
   }
+  const auto again = [&](LobeKind kind, float ax, float ay, float eta, bool Lobe::*what) {
+    all.push_back(lobe(kind, ax, ay, eta, none, apart));
+    all.back().*what = true;
+  };
+  again(LobeKind::kBeckmann, 0.5f, 0.15f, 1, &Lobe::byFirstAxis);
+  again(LobeKind::kGgxRefraction, 0.4f, 0.4f, 0.7f, &Lobe::refractsUp);
+  again(LobeKind::kBeckmannRefraction, 0.4f, 0.4f, 0.9f, &Lobe::refractsUp);
   for (Lobe& l : all) l.weight = {0.5f, 0.25f, 0.75f}, l.through = {0.3f, 0.6f, 0.2f};
   return all;
 }
@@ -101,11 +109,21 @@ Vec3<T> drawn(const Lobe& l, Vec3<T> wo, Random& random) {
   return sample(l, wo, u, isGlass(l.kind) ? T(random.uniform() * (1 - 0x1p-24)) : T(0));
 }
 
+// f cos as samples of the lobe bring it: as the density that Cycles counts has it, and by strays.
+inline Vec3<double> brought(const Lobe& l, Vec3<double> wi, Vec3<double> wo) {
+  const LobeValue<double> v = evaluate(l, wi, wo);
+  if (!(v.pdf > 0)) return {};
+  const SampleDensities<double> d = sampleDensities(l, wi, wo, v.pdf);
+  Vec3<double> sum = d.counted > 0 ? v.fCos * (d.pdf / d.counted) : Vec3<double>{};
+  strays(l, wi, wo, [&](const Stray<double>& s) { sum += s.fCos; });
+  return sum;
+}
+
 // Glass as the two lobes whose light it sends, each sampled on its own; another lobe itself.
 inline std::vector<Lobe> halves(const Lobe& l) {
   if (!isGlass(l.kind)) return {l};
   Lobe up = l, down = l;
-  down.weight = l.through;
+  down.weight = l.through, up.refractsUp = false;
   const bool ggx = l.kind == LobeKind::kGgxGlass;
   up.kind = ggx ? LobeKind::kGgx : LobeKind::kBeckmann;
   down.kind = ggx ? LobeKind::kGgxRefraction : LobeKind::kBeckmannRefraction;

@@ -361,6 +361,54 @@ TEST(Closures, LampsThatGrazeRoughGlassAreSeen) {
     EXPECT_NEAR(meanOf(scene, settings(a)) / lamp, 1, 0.01) << name(a);
 }
 
+// Samples of Cycles leave by other densities than it counts, or by half vectors turned over, or refract upwards: under
+// a constant sky a surface shows what they bring.
+TEST(Closures, ShowWhatSamplesOfCyclesBring) {
+  const auto old = [](Closure c) {
+    c.version = 3;
+    return c;
+  };
+  struct Case {
+    Closure closure;
+    float angle;
+    double least;  // by how much it is another light than that of f
+  };
+  Closure stretched = old(rough(closure(ClosureType::kGlossy), 0.5f, Glossy::kBeckmann));
+  stretched.scalars[1].value = 0.1f;
+  const Case cases[] = {
+      {rough(closure(ClosureType::kGlossy), 0.0625f, Glossy::kAshikhminShirley), 1.5533f, 0.3},
+      {rough(closure(ClosureType::kGlossy), 0.6f, Glossy::kAshikhminShirley), 1.4f, 0.1},
+      {stretched, 0.8f, 0.03},
+      {old(with(rough(closure(ClosureType::kRefraction), 0.36f, Glossy::kGgx), 1, 0.9f)), 1.4835f, 0.3}};
+  for (const Case& c : cases) {
+    const Closure& k = c.closure;
+    Scene scene;
+    scene.materials = {material({k})};
+    addPlane(scene, 1000, 0);
+    lookFrom(scene, c.angle, 0.0005f, 4);
+    worldOf(scene).radiance = kWhite;
+    std::vector<Lobe> lobes;
+    const auto add = [&](const Lobe& l) { lobes.push_back(l); };
+    const Vec3<double> wo{std::sin(c.angle), 0, std::cos(c.angle)};
+    if (k.type == ClosureType::kRefraction)
+      addRefraction(k.version, k.distribution, kWhite, k.scalars[0].value, k.scalars[1].value, add);
+    else
+      addGlossy(k.version, k.distribution, kWhite, kWhite, k.scalars[0].value, k.scalars[1].value, float(wo.z), add);
+    ASSERT_EQ(lobes.size(), 1u);
+    constexpr int kSteps = 300;
+    double brought = 0, own = 0;
+    for (int i = 0; i < kSteps; ++i)
+      for (int j = 0; j < kSteps; ++j) {
+        const Vec3<double> wi = sample(lobes[0], wo, Vec2<double>{(i + 0.5) / kSteps, (j + 0.5) / kSteps}, 0.0);
+        const LobeValue<double> v = evaluate(lobes[0], wi, wo);
+        brought += weight(lobes[0], wi, wo).y / (kSteps * kSteps);
+        if (v.pdf > 0) own += v.fCos.y / v.pdf / (kSteps * kSteps);
+      }
+    EXPECT_NEAR(meanOf(scene, settings()) / brought, 1, 0.01) << int(k.distribution);
+    EXPECT_GT(std::abs(brought / own - 1), c.least) << int(k.distribution);
+  }
+}
+
 // A technique that is called by a class of lobes is that class's on every surface, whatever other lobes are there.
 TEST(Closures, TechniquesAreThoseOfTheirClass) {
   Scene scene = ball({rough(closure(ClosureType::kGlass), 0.2f)});
