@@ -10,6 +10,8 @@ from wardmis import compat
 COLUMNS, ROWS = 4, 3
 SAMPLES, BLOCK = 24, 16  # a block is a ball's place in the image
 SELDOM = {
+    "indices",
+    "metals",
     "principled_at_random_1",
     "principled_at_random_2",
     "principled_at_random_3",
@@ -22,25 +24,14 @@ SELDOM = {
     "rough_glass_multiple",
     "rough_refraction",
 }
+FURNACES, FURNACE_SAMPLES = {"gloss", "rough_glass", "principled_coat"}, 12  # what a sample has under a constant light
 BOUNCES = 6
 OLD = compat.CYCLES == 3
 GLOSSY = "BsdfGlossy" if OLD else "BsdfAnisotropic"
 
 
-def on_balls(*builders):
-    """Of each shader that `builder(tree)` returns the socket of, at most 12, a ball."""
-    assert len(builders) <= COLUMNS * ROWS
-    for number, build in enumerate(builders):
-        of, tree, output = material()
-        tree.links.new(build(tree), output.inputs["Surface"])
-        made = ball(of, radius=0.42, fineness=40)
-        made.location = number % COLUMNS - (COLUMNS - 1) / 2, 0, (ROWS - 1) / 2 - number // COLUMNS
-        made.rotation_euler = 0.4, 0.5, 0.6
-    room()
-
-
 def room():
-    """A checkered wall behind y = 0, an orthographic camera before it, light from all around."""
+    """A checkered wall behind y = 0, light from all around."""
     dark, tree, output = material("Wall")
     checks = add(tree, "TexChecker", Scale=9, Color1=(0.8, 0.75, 0.6, 1), Color2=(0.1, 0.15, 0.2, 1))
     tree.links.new(add(tree, "TexCoord").outputs["UV"], checks.inputs["Vector"])
@@ -50,8 +41,10 @@ def room():
     wall.location, wall.rotation_euler = (0, 1, 0), (1.5707964, 0, 0)
     structured_light()
     lamp("AREA", (-3, -5, 4), 350, (1, 0.9, 0.8), target=(0, 0, 0), size=6)
-    seen = camera((0, -6, 0), (0, 0, 0))
-    seen.data.type, seen.data.ortho_scale = "ORTHO", 4
+
+
+def constant_light():
+    sky((1, 1, 1), 0.5)
 
 
 def structured_light():
@@ -61,6 +54,41 @@ def structured_light():
     world = sky((1, 1, 1))
     texture = add(world, "TexEnvironment", {"image": image("Sky", pixels, floats=True)})
     world.links.new(texture.outputs["Color"], world.nodes["Background"].inputs["Color"])
+
+
+def on_balls(*builders, surroundings=room):
+    """Of each shader that `builder(tree)` returns the socket of, at most 12, a ball; seen by an orthographic camera."""
+    assert len(builders) <= COLUMNS * ROWS
+    for number, build in enumerate(builders):
+        of, tree, output = material()
+        tree.links.new(build(tree), output.inputs["Surface"])
+        made = ball(of, radius=0.42, fineness=40)
+        made.location = number % COLUMNS - (COLUMNS - 1) / 2, 0, (ROWS - 1) / 2 - number // COLUMNS
+        made.rotation_euler = 0.4, 0.5, 0.6
+    surroundings()
+    seen = camera((0, -6, 0), (0, 0, 0))
+    seen.data.type, seen.data.ortho_scale = "ORTHO", 4
+
+
+def balls(constant=None, **more):
+    """Enters the shaders that a function lists twice: in the room, and under a constant light alone, where it shows how much of all
+    light each gives back. `constant`: what is another there."""
+
+    def enter(shaders):
+        def furnace():
+            on_balls(*shaders(), surroundings=constant_light)
+
+        def in_room():
+            on_balls(*shaders())
+
+        in_room.__name__, furnace.__name__ = shaders.__name__, f"{shaders.__name__}_constant"
+        if shaders.__name__ not in FURNACES:
+            SELDOM.add(furnace.__name__)
+        scene(**more)(in_room)
+        scene(**{**more, "samples": FURNACE_SAMPLES, **(constant or {})})(furnace)
+        return shaders
+
+    return enter
 
 
 def shader(kind, settings=None, **inputs):
@@ -113,9 +141,9 @@ def refraction(distribution, roughness, **inputs):
     return shader("BsdfRefraction", {"distribution": distribution}, Roughness=roughness, **inputs)
 
 
-@scene(bounces=BOUNCES)
+@balls(bounces=BOUNCES)
 def sharp_glass():
-    on_balls(
+    return [
         glass("GGX", 0, IOR=1.5, Color=WHITE),
         glass("BECKMANN", 0, IOR=1.5, Color=AMBER),
         glass("MULTI_GGX", 0, IOR=1.1, Color=SEA),
@@ -128,7 +156,7 @@ def sharp_glass():
         refraction("GGX", 0, IOR=1.0, Color=ROSE),
         glass("SHARP", 0.5, IOR=1.3, Color=AMBER) if OLD else glass("GGX", 0.001, IOR=1.3, Color=AMBER),
         shader("BsdfTransparent", Color=SEA),
-    )
+    ]
 
 
 # a factor that keeps the energy, where Cycles 3.4 follows light from facet to facet
@@ -137,34 +165,40 @@ MANY_OF_3_4 = (
 )
 
 
-@scene(bounces=BOUNCES)
+@balls(bounces=BOUNCES)
 def rough_glass():
-    on_balls(
+    return [
         *(glass(d, r, IOR=1.45, Color=WHITE) for r in (0.15, 0.4, 0.8) for d in ("GGX", "BECKMANN")),
         glass("GGX", 0.3, IOR=0.8, Color=AMBER),
         glass("GGX", 0.5, IOR=2, Color=SEA),
         glass("BECKMANN", 1, IOR=1.1, Color=ROSE),
-    )
+    ]
 
 
-@scene(bounces=BOUNCES, samples=32, **MANY_OF_3_4 | ({"within": 0.12} if OLD else {}))
+@balls(bounces=BOUNCES, samples=32, **MANY_OF_3_4 | ({"within": 0.12} if OLD else {}))
 def rough_glass_multiple():
     """Of an index below 1 and a roughness of 0.8 it differs most."""
-    on_balls(
+    return [
         *(glass("MULTI_GGX", r, IOR=ior, Color=WHITE) for r in (0.15, 0.4, 0.8) for ior in (1.45, 0.8)),
         glass("MULTI_GGX", 0.5, IOR=2, Color=SEA),
-    )
+    ]
 
 
-@scene(bounces=BOUNCES)
+@balls(bounces=BOUNCES)
 def rough_refraction():
-    on_balls(
+    return [
         *(refraction(d, r, IOR=1.45, Color=WHITE) for r in (0.1, 0.3, 0.6, 0.9) for d in ("GGX", "BECKMANN")),
         refraction("GGX", 0.4, IOR=0.8, Color=AMBER),
         refraction("BECKMANN", 0.3, IOR=2, Color=SEA),
         refraction("GGX", 1, IOR=1.2, Color=ROSE),
         refraction("GGX", 0.4, IOR=1.0, Color=ROSE),
-    )
+    ]
+
+
+@balls(bounces=BOUNCES)
+def indices():
+    """From below that of air to that of gems."""
+    return [kind("GGX", r, IOR=ior) for ior in (0.9, 1.05, 3) for kind in (glass, refraction) for r in (0, 0.4)]
 
 
 # ---- transparency ---------------------------------------------------------------------------------------------------
@@ -177,8 +211,7 @@ def checked(tree):
 
 @scene(bounces=BOUNCES)
 def alpha():
-    """Whose shadows are coloured, and thrown through several. What is transparent and translucent is left out in Cycles 3.4, which
-    weighs what goes straight through against what is let through there: 3 % of a block."""
+    """Whose shadows are coloured, and thrown through several."""
     paint, window = shader("BsdfDiffuse", Color=AMBER), shader("BsdfTransparent", Color=WHITE)
     pane = shader("BsdfTransparent", Color=ROSE)
     on_balls(
@@ -192,7 +225,7 @@ def alpha():
         mixed(0.5, window, glass("GGX", 0, IOR=1.3)),
         added(shader("BsdfTransparent", Color=rgba(0.3, 0.4, 0.2)), shader("BsdfDiffuse", Color=rgba(0.2, 0.3, 0.5))),
         mixed(0.5, window, shader("Emission", Color=SEA, Strength=0.7)),
-        mixed(0.5, window, shader("BsdfDiffuse" if OLD else "BsdfTranslucent", Color=SEA)),
+        mixed(0.5, window, shader("BsdfTranslucent", Color=SEA)),
         mixed(0.4, None, paint),
     )
 
@@ -247,12 +280,12 @@ def glossy(distribution, roughness, anisotropy=0.0, rotation=0.0, color=WHITE, *
     )
 
 
-@scene(bounces=2)
+@balls(bounces=2)
 def gloss():
-    on_balls(*(glossy(d, r) for r in (0, 0.3, 0.7) for d in REFLECTIONS))
+    return [*(glossy(d, r) for r in (0, 0.3, 0.7) for d in REFLECTIONS)]
 
 
-@scene(bounces=2)
+@balls(bounces=2, samples=32)
 def brighter_than_white():
     """Colours above 1: what is reflected more than once takes them as they are (since 4.0), a metal of the Principled shader is white at most."""
     bright = rgba(0.5, 1.7, 1)
@@ -261,23 +294,25 @@ def brighter_than_white():
         if OLD
         else [glossy("MULTI_GGX", r, color=bright) for r in (0.3, 0.6)] + [glass("MULTI_GGX", 0.5, Color=bright)]
     )
-    on_balls(
+    return [
         *many,
         *(glossy("GGX", r, color=bright) for r in (0.3, 0.6)),
         *(principled(Base_Color=bright, Roughness=0.5, Metallic=m) for m in (1.0, 0.5, 0.0)),
-    )
+    ]
 
 
-@scene(bounces=2)
+ONE_AXIS = {"within": 0.1, "why": "Cycles 3.4 draws both axes of Beckmann by one roughness"} if OLD else {}
+
+
+@balls(bounces=2, **ONE_AXIS)
 def anisotropic_gloss():
-    """Cycles 3.4 draws Beckmann's facets by the first axis' roughness for both and divides by the density of both (113 % off in a
-    block); its walk among facets is up to 27 % off the factor, which is not explained. They are left out there."""
-    reflections = ("GGX", "ASHIKHMIN_SHIRLEY") if OLD else REFLECTIONS
-    on_balls(
+    """In 3.4 without the walk among facets, which is up to 27 % off the factor; that is not explained."""
+    reflections = [kind for kind in REFLECTIONS if not OLD or kind != "MULTI_GGX"]
+    return [
         *(glossy(d, 0.4, 0.7) for d in reflections),
         *(glossy(d, 0.6, -0.8, 0.15, AMBER) for d in reflections),
         *(glossy(d, 0.3, 0.5, 0.25, SEA) for d in reflections),
-    )
+    ]
 
 
 @scene(bounces=2)
@@ -317,21 +352,21 @@ def sheen(distribution, roughness, color=WHITE):
     return shader("BsdfSheen", {"distribution": distribution}, Color=color, Roughness=roughness)
 
 
-@scene(bounces=2)
+@balls(bounces=2)
 def diffuse_and_cloth():
     cloth = (
         [shader("BsdfVelvet", Color=ROSE, Sigma=sigma) for sigma in (0.05, 0.3, 0.6, 1)]
         if OLD
         else [sheen("ASHIKHMIN", 0.3, ROSE), *(sheen("MICROFIBER", r, ROSE) for r in (0.1, 0.4, 0.9))]
     )
-    on_balls(
+    return [
         *(shader("BsdfDiffuse", Color=AMBER, Roughness=r) for r in (0, 0.2, 0.6, 1)),
         *cloth,
         shader("BsdfTranslucent", Color=SEA),
         mixed(0.4, shader("BsdfTranslucent", Color=SEA), shader("BsdfDiffuse", Color=AMBER, Roughness=0.5)),
         added(shader("BsdfDiffuse", Color=rgba(0.3, 0.2, 0.1)), glossy("BECKMANN", 0.3, color=rgba(0.5, 0.5, 0.4))),
         shader("Background", Color=SEA, Strength=0.8),
-    )
+    ]
 
 
 @scene
@@ -383,12 +418,12 @@ def gloss_and_lamps_behind():
         lamp("POINT", place, 300)
 
 
-@scene(bounces=2)
+@balls(bounces=2)
 def several_lobes():
     """More of them than techniques."""
     layers = [glossy(d, r, color=rgba(0.25, 0.2, 0.15)) for d, r in (("GGX", 0.1), ("BECKMANN", 0.3), ("GGX", 0.6))]
     paint = shader("BsdfDiffuse", Color=SEA)
-    on_balls(
+    return [
         added(layers[0], layers[1]),
         added(layers[0], added(layers[1], layers[2])),
         added(paint, added(layers[0], layers[2])),
@@ -397,7 +432,18 @@ def several_lobes():
         mixed(0.5, glass("GGX", 0.3, IOR=1.4), glossy("GGX", 0)),
         mixed(0.5, glossy("GGX", 0, color=AMBER), glossy("GGX", 0, color=SEA)),
         mixed(checked, glossy("GGX", 0.2), paint),
-    )
+    ]
+
+
+def metal(distribution, roughness, anisotropy=0.0):
+    settings = {"distribution": distribution, "fresnel_type": "F82"}
+    inputs = {"Base_Color": AMBER, "Edge_Tint": ROSE, "Anisotropy": anisotropy, "Rotation": 0.1}
+    return shader("BsdfMetallic", settings, Roughness=roughness, **inputs)
+
+
+@balls(bounces=2, since=(4, 3))
+def metals():
+    return [metal(d, r, a) for d in ("GGX", "MULTI_GGX") for r, a in ((0, 0), (0.2, 0), (0.5, 0), (1, 0), (0.5, 0.7))]
 
 
 # ---- Principled -----------------------------------------------------------------------------------------------------
@@ -425,9 +471,9 @@ def named(**inputs):
     )
 
 
-@scene(bounces=2)
+@balls(bounces=2)
 def principled_base():
-    on_balls(
+    return [
         named(),
         *(named(Roughness=r) for r in (0, 0.2, 1)),
         *(named(Metallic=m, Roughness=0.3) for m in (0.5, 1)),
@@ -435,35 +481,27 @@ def principled_base():
         *(named(Anisotropic=a, Metallic=1, Roughness=0.4, Anisotropic_Rotation=r) for a, r in ((0.8, 0), (0.5, 0.2))),
         named(emission=rgba(0.2, 0.4, 0.8), Emission_Strength=0.8),
         named(IOR=1.8, Roughness=0.3),
-    )
+    ]
 
 
 GLOWS = {"emission": rgba(0.2, 0.4, 0.8), "Emission_Strength": 0.8}
 
 
-@scene(bounces=2)
+@balls(bounces=2)
 def principled_sheen():
-    on_balls(
+    return [
         *(named(sheen=s) for s in (0.5, 1)),
         named(sheen=1, Metallic=0.4),
         named(sheen=1, Sheen_Tint=1.0 if OLD else ROSE),
         named(sheen=1, **GLOWS),
         named(Specular_Tint=1.0 if OLD else SEA, level=1),
         *([] if OLD else [named(sheen=1, Sheen_Roughness=r) for r in (0.1, 0.3, 1)]),
-    )
+    ]
 
 
-# Cycles 3.4 samples the coat's facets by another distribution than it takes the density of
-COAT_OF_3_4 = (
-    {"within": 0.03, "why": "Cycles 3.4 draws the coat's directions by another density than it divides by"}
-    if OLD
-    else {}
-)
-
-
-@scene(bounces=2, **COAT_OF_3_4)
+@balls(bounces=2)
 def principled_coat():
-    on_balls(
+    return [
         *(named(coat=c, Roughness=0.7) for c in (0.5, 1)),
         named(coat=1, coat_roughness=0.4, Roughness=0.8),
         named(coat=1, coat_roughness=0, Metallic=1, Roughness=0.5),
@@ -477,13 +515,13 @@ def principled_coat():
             if OLD
             else [named(coat=1, Coat_Tint=AMBER), named(coat=1, Coat_IOR=2.0), named(coat=1, sheen=1, **GLOWS)]
         ),
-    )
+    ]
 
 
-@scene(bounces=BOUNCES)
+@balls(bounces=BOUNCES)
 def principled_glass():
     weight = NAMES["transmission"][0 if OLD else 1]
-    on_balls(
+    return [
         *(named(transmission=1, Roughness=r) for r in (0, 0.3, 0.8)),
         principled({"distribution": "GGX"}, Roughness=0.5, **{weight: 1}),
         *([] if OLD else [principled({"distribution": "MULTI_GGX"}, Roughness=0.5, **{weight: 1})]),
@@ -494,26 +532,26 @@ def principled_glass():
         named(Alpha=0.3),
         named(Alpha=0.6, **GLOWS),
         named(transmission=1, Roughness=0.1, Specular_Tint=0.7 if OLD else ROSE),
-    )
+    ]
 
 
-@scene(bounces=2)
+@balls(bounces=2)
 def principled_single():
     """Without what facets reflect again."""
-    on_balls(
+    return [
         *(principled({"distribution": "GGX"}, Roughness=r, Metallic=m) for r in (0.2, 0.5, 0.8, 1) for m in (0, 0.5, 1))
-    )
+    ]
 
 
-@scene(bounces=2, **MANY_OF_3_4)
+@balls(bounces=2, **MANY_OF_3_4)
 def principled_multiple():
     multiple = {"distribution": "MULTI_GGX"}
-    on_balls(*(principled(multiple, Roughness=r, Metallic=m) for r in (0.2, 0.5, 0.8, 1) for m in (0, 0.5, 1)))
+    return [*(principled(multiple, Roughness=r, Metallic=m) for r in (0.2, 0.5, 0.8, 1) for m in (0, 0.5, 1))]
 
 
 def random_settings(seed):
-    """Of every input of the node; what is not supported, and what has a scene of its own for 3.4, is left as it comes."""
-    left = ("Subsurface", "Thin", "Weight", *(("Clearcoat",) if OLD else ()))
+    """Of every input of the node; what is not supported is left as it comes."""
+    left = ("Subsurface", "Thin", "Weight")
     distributions = ["GGX"] if OLD else ["GGX", "MULTI_GGX"]
     random_number = random.Random(seed)
 
@@ -533,8 +571,6 @@ def random_settings(seed):
                 socket.default_value = pick if random_number.random() < 0.2 else 1
             else:  # half of the layers are left out
                 socket.default_value = pick if random_number.random() < 0.5 else socket.default_value
-        if OLD and node.inputs["Transmission"].default_value > 0:
-            node.inputs["Alpha"].default_value = 1  # Cycles loses light of both at once there
         return node.outputs[0]
 
     return build
@@ -542,10 +578,10 @@ def random_settings(seed):
 
 def at_random(tens):
     def build():
-        on_balls(*map(random_settings, range(10 * tens, 10 * tens + 10)))
+        return map(random_settings, range(10 * tens, 10 * tens + 10))
 
     build.__name__ = f"principled_at_random_{tens}"
-    scene(bounces=BOUNCES)(build)
+    balls(bounces=BOUNCES)(build)
 
 
 for tens in range(5):
@@ -566,11 +602,11 @@ def of_direction(name, **inputs):
     return build
 
 
-@scene(bounces=BOUNCES)
+@balls(bounces=BOUNCES)
 def principled_left():
     """The inputs that no other scene changes."""
     weight, coat_normal = ("Transmission", "Clearcoat_Normal") if OLD else ("Transmission_Weight", "Coat_Normal")
-    on_balls(
+    return [
         of_direction("Normal", Roughness=0.3),
         of_direction("Tangent", Anisotropic=0.8, Metallic=1, Roughness=0.4),
         *([] if OLD else [of_direction(coat_normal, coat=1, Roughness=0.7)]),
@@ -583,4 +619,4 @@ def principled_left():
             if OLD
             else [named(Diffuse_Roughness=r) for r in (0.5, 1)]
         ),
-    )
+    ]
