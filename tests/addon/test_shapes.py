@@ -131,12 +131,15 @@ class Shapes(unittest.TestCase):
     def seen_by_us_alone(self, exported, tree, met) -> int:
         matrix = exported.camera.matrix
         left, right, bottom, top = exported.camera.view_plane
+        parallel = exported.camera.projection == "orthographic"
         padded = np.pad(met, 1, constant_values=True)
         around = sum(padded[i : i + HEIGHT, j : j + WIDTH].astype(int) for i in range(3) for j in range(3))
         count = 0
         for y, x in zip(*np.nonzero(around == 0)):
-            ray = (left + (right - left) * (x + 0.5) / WIDTH, top - (top - bottom) * (y + 0.5) / HEIGHT, -1)
-            count += tree.ray_cast(Vector(matrix[:3, 3]), Vector(matrix[:3, :3] @ ray))[0] is not None
+            across, up = left + (right - left) * (x + 0.5) / WIDTH, top - (top - bottom) * (y + 0.5) / HEIGHT
+            start, ray = ((across, up, 0), (0, 0, -1)) if parallel else ((0, 0, 0), (across, up, -1))
+            origin = Vector(matrix[:3, 3] + matrix[:3, :3] @ start)
+            count += tree.ray_cast(origin, Vector(matrix[:3, :3] @ ray))[0] is not None
         return count
 
 
