@@ -197,10 +197,6 @@ class _Gatherer:
                 continue
             self._note_light_linking(obj.original)
             if kind == "MESH":
-                if compat.is_subdivided_by_pixels(self.scene, obj.original):
-                    self.context.note(
-                        f"object '{obj.name}': adaptive subdivision is not supported; its modifier subdivides it as often as it says"
-                    )
                 if self.view_layer.use_solid:
                     self._place(obj, instance, "mesh", obj.data, self._mesh_geometry)
             elif kind == "CURVES":
@@ -371,11 +367,16 @@ class _Gatherer:
         return len(self.meshes) - 1
 
     def _mesh_geometry(self, instance: Any, _mesh: Any, wanted: Wanted) -> Geometry | None:
-        if _is_gas_domain(compat.owner_of_mesh(instance)):
+        owner = compat.owner_of_mesh(instance)
+        if _is_gas_domain(owner):
             self.context.note(
                 f"object '{self.context.owner}': smoke and fire are not supported; their domain is left out"
             )
             return None
+        if owner is not None and compat.is_subdivided_by_pixels(self.scene, owner.original):
+            self.context.note(
+                f"object '{self.context.owner}': adaptive subdivision is not supported; its modifier subdivides it as often as it says"
+            )
         with compat.whole_mesh(instance) as whole:
             return gather_geometry(whole, wanted, self.context, instance.object)
 
