@@ -270,6 +270,11 @@ def transparent_shadow(material: Any) -> bool:
     return bool(getattr(material, "use_transparent_shadow", getattr(material.cycles, "use_transparent_shadow", True)))
 
 
+def displacement_method(material: Any) -> str:
+    """BUMP, DISPLACEMENT or BOTH; it was Cycles' own setting until 4.0."""
+    return str(getattr(material, "displacement_method", getattr(material.cycles, "displacement_method", "BUMP")))
+
+
 def light_is_met(light: Any) -> bool:
     """Whether surfaces' rays find the light too; it is Cycles' Multiple Importance."""
     return bool(getattr(getattr(light, "cycles", None), "use_multiple_importance_sampling", True))
@@ -375,6 +380,7 @@ def deep_recursion() -> Iterator[None]:
 # Whose formulas this Blender's Cycles has: 3.4's (3), 4.3's (4) or 5.2's (5), which docs/scene-format.md calls `version`.
 CYCLES = 3 if VERSION < (4, 0, 0) else 4 if VERSION < (5, 0, 0) else 5
 NORMAL_MAP = CYCLES if VERSION < (5, 0, 0) or VERSION >= (5, 1, 0) else 4
+DISPLACEMENT_WIDTH = 1.0 if VERSION < (4, 5, 0) else 0.1  # of the steps in which Cycles makes a bump of it
 MAGIC = 4 if VERSION < (5, 2, 0) else 5
 BRICK = 3 if VERSION < (3, 5, 0) else 5
 RAMP_STEPS = 255 if VERSION < (4, 0, 0) else 256  # of the tables that Cycles makes of colour ramps and curves

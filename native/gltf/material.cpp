@@ -134,7 +134,7 @@ Material Materials::ward(const Json& extension) {
   }
   if (program_) {
     std::shared_ptr<Program> program = program_->finish([&](const Json& index) { return texture(index, true); });
-    if (!program->results.empty()) m.program = std::move(program);
+    if (!program->instructions.empty()) m.program = std::move(program);
   }
   return m;
 }

@@ -223,6 +223,7 @@ std::shared_ptr<Program> ProgramReader::finish(const std::function<int(const Jso
   std::vector<size_t> lastUse(n, kNever);  // the last step that needs the value; n: an input does
   for (const int root : roots_) lastUse[root] = n;
   for (size_t i = n; i-- > 0;) {
+    if (lastUse[i] == kNever && steps_[i].operation == Operation::kBend) lastUse[i] = n;  // what follows sees it
     if (lastUse[i] == kNever) continue;
     for (const Argument& a : steps_[i].arguments)
       if (a.value >= 0 && lastUse[a.value] == kNever) lastUse[a.value] = i;
@@ -316,7 +317,8 @@ std::shared_ptr<Program> ProgramReader::finish(const std::function<int(const Jso
 uint32_t ProgramReader::attribute(Program& program, const Step& step, const std::string& name) {
   using Kind = ProgramAttribute::Kind;
   const Kind kind = step.operation == Operation::kUv ? Kind::kUvs
-                    : step.operation == Operation::kTangentUv || step.operation == Operation::kNormalMapTangent
+                    : step.operation == Operation::kTangentUv || step.operation == Operation::kNormalMapTangent ||
+                            step.operation == Operation::kVectorDisplacement
                         ? Kind::kTangents
                         : Kind::kNamed;
   const ProgramAttribute wanted{kind, name};

@@ -8,7 +8,7 @@ namespace wardmis::detail {
 void resolve(const Scene& scene, const Material& m, const ShadedPoint& point, Vec2f uv, Surface& surface, Rgb& emission,
              Vec3f& normal) {
   Slots slots;
-  runProgram(scene, point, slots);
+  const Vec3f own = runProgram(scene, point, slots);
   const Program& program = *m.program;
   const auto color = [&](const ColorInput& c) {
     return c.result >= 0 ? c.value * vectorOf(program, slots, c.result) : evaluate(scene, c, uv);
@@ -22,8 +22,8 @@ void resolve(const Scene& scene, const Material& m, const ShadedPoint& point, Ve
   surface.ax = alpha(m.alphaX);
   surface.ay = alpha(m.alphaY);
   emission = color(m.emission);
-  if (m.normal < 0) return;
-  const Vec3f n = directionOf(scene, program, slots, m.normal);
+  if (m.normal < 0 && own == point.normal) return;
+  const Vec3f n = m.normal < 0 ? own : directionOf(scene, program, slots, m.normal);
   const float l = length(n);
   if (l > 0) normal = bent(n / l, point.geometric, point.wo);
 }
@@ -32,7 +32,7 @@ template <size_t K>
 Framef resolveLobes(const Scene& scene, const Material& m, const ShadedPoint& point, Vec2f uv, Vec3f tangent,
                     const LobeNumbers& numbers, LobeSurface<K>& surface, Rgb& emission) {
   Slots slots;
-  if (m.program) runProgram(scene, point, slots);
+  const Vec3f own = m.program ? runProgram(scene, point, slots) : point.normal;
   const auto color = [&](const ColorInput& c) {
     if (c.result >= 0) return c.value * vectorOf(*m.program, slots, c.result);
     return c.texture.texture >= 0 ? evaluate(scene, c, uv) : c.value;
@@ -59,7 +59,7 @@ Framef resolveLobes(const Scene& scene, const Material& m, const ShadedPoint& po
     ward.weight = notNegative(color(m.specular));
     ward.kind = wardKind(m.variant);
     ward.ax = clampedAlpha(scalar(m.alphaX)), ward.ay = clampedAlpha(scalar(m.alphaY));
-    const Vec3f normal = bent(normalOf(m.normal, point.normal), point.geometric, point.wo);
+    const Vec3f normal = bent(normalOf(m.normal, own), point.geometric, point.wo);
     const Framef frame = frameAround(normal, ward.ax != ward.ay, m.rotation);
     surface.begin(frame, point.wo);
     if (maxComponent(diffuse.weight) > 0) surface.add(diffuse);
@@ -68,7 +68,7 @@ Framef resolveLobes(const Scene& scene, const Material& m, const ShadedPoint& po
     return frame;
   }
 
-  const Framef frame = Framef::around(point.normal);
+  const Framef frame = Framef::around(own);
   // Cycles 3.4 alone draws none of a camera ray's closures less often than once in nine times
   const bool old = m.closures.front().version == 3;
   surface.begin(frame, point.wo, old, old && point.path.depth == 0 && point.path.transparent == 0);
@@ -88,7 +88,7 @@ Framef resolveLobes(const Scene& scene, const Material& m, const ShadedPoint& po
                              : c.type == ClosureType::kPrincipled  ? v.scalars[principled::kAnisotropic] > 0
                                                                    : false;
     const auto frameOf = [&](Vec3f normal) {
-      return normal == point.normal ? uint8_t{0} : surface.addFrame(Framef::around(normal), c.version);
+      return normal == own ? uint8_t{0} : surface.addFrame(Framef::around(normal), c.version);
     };
     // What would reflect into the surface is turned until it does not, as in Cycles; since 4.x not what is diffuse, but
     // what is translucent is, since 5.x not sheen; and never on curves, of which a ribbon's own normal is not that of
@@ -97,16 +97,16 @@ Framef resolveLobes(const Scene& scene, const Material& m, const ShadedPoint& po
       if (isCurve(point.shape) || (c.version >= 4 && c.type == ClosureType::kSheen)) return normal;
       return surface::visiblyReflecting(c.version, point.geometric, point.wo, normal);
     };
-    const Vec3f told = normalOf(c.normal, point.normal), n = reflecting(told);
+    const Vec3f told = normalOf(c.normal, own), n = reflecting(told);
     std::array<uint8_t, 3> at{};
-    at[kBaseFrame] = anisotropic ? surface.addFrame(frameAround(n, true, scalar(c.rotation), c.tangent),
-                                                    n == point.normal ? 0 : c.version)
-                                 : frameOf(n);
+    at[kBaseFrame] =
+        anisotropic ? surface.addFrame(frameAround(n, true, scalar(c.rotation), c.tangent), n == own ? 0 : c.version)
+                    : frameOf(n);
     const Vec3f dull = c.version >= 4 && c.type != ClosureType::kTranslucent ? told : n;
-    const uint8_t atDiffuse = dull == point.normal ? uint8_t{0} : dull == n ? at[kBaseFrame] : frameOf(dull);
+    const uint8_t atDiffuse = dull == own ? uint8_t{0} : dull == n ? at[kBaseFrame] : frameOf(dull);
     at[kSheenFrame] = atDiffuse;
     if (c.type == ClosureType::kPrincipled3 || c.type == ClosureType::kPrincipled) {  // whose coat has its own normal
-      const Vec3f coat = normalOf(c.coatNormal, point.normal);
+      const Vec3f coat = normalOf(c.coatNormal, own);
       at[kCoatFrame] = frameOf(reflecting(coat));
       if (c.type == ClosureType::kPrincipled && told != coat) {
         const float share = std::clamp(v.scalars[principled::kCoatWeight], 0.0f, 1.0f);

@@ -288,6 +288,8 @@ inline constexpr std::array brick{
   X(kNormalMapObject, "normal-map-object", kVector, "vn", normalMap, kReadsObject) \
   X(kNormalMapWorld, "normal-map-world", kVector, "vn", normalMap, kReadsNothing) \
   X(kBump, "bump", kVector, "nnnnnv", bump, kReadsShift) \
+  X(kVectorDisplacement, "vector-displacement", kVector, "v", set, kReadsAttributes | kReadsObject) \
+  X(kBend, "bend", kVector, "v", none, kReadsNothing) \
   X(kBelowLayers, "below-layers", kVector, "nnnvnnvvv", version, kReadsNothing) \
   /* colours */ \
   X(kMix, "mix", kVector, "nvv", mix, kReadsNothing) \

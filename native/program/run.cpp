@@ -11,7 +11,7 @@
 
 namespace wardmis {
 
-void run(const Program& program, const ShadingContext& c, const TextureAccess& textures, Slots& slots) {
+void run(const Program& program, ShadingContext& c, const TextureAccess& textures, Slots& slots) {
   using namespace arithmetic;
   using enum Operation;
   for (const Instruction& i : program.instructions) {
@@ -333,6 +333,13 @@ void run(const Program& program, const ShadingContext& c, const TextureAccess& t
         break;
       case kBump:
         o.set(surface::bump(c, o.n(0), o.n(1), o.n(2), o.n(3), o.n(4), o.v(5), o.number(0), o.word(1)));
+        break;
+      case kVectorDisplacement:
+        o.set(surface::vectorDisplacement(c, c.attributes[o.word(0)], o.v(0)));
+        break;
+      case kBend:
+        c.normal = surface::bent(c, o.v(0));
+        o.set(c.normal);
         break;
       case kBelowLayers: {
         Principled p;

@@ -11,7 +11,7 @@ namespace wardmis {
 
 using Slots = std::array<float, kMostSlots>;
 
-// Afterwards the values that inputs refer to are in their slots.
-void run(const Program& program, const ShadingContext& context, const TextureAccess& textures, Slots& slots);
+// Afterwards the values that inputs refer to are in their slots, and the context has the normal that `bend` gave it.
+void run(const Program& program, ShadingContext& context, const TextureAccess& textures, Slots& slots);
 
 }  // namespace wardmis

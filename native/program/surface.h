@@ -112,6 +112,19 @@ inline Vec3f bump(const ShadingContext& c, float h, float hx, float hy, float di
   return version == 3 ? visiblyReflecting(version, c.trueNormal, c.incoming, n) : n;
 }
 
+inline Vec3f bent(const ShadingContext& c, Vec3f n) {
+  n = safeNormalize(n);
+  return isUsable(n) ? n : c.normal;
+}
+
+// In the world, of what is told along the tangent (x), the normal (y) and the bitangent (z) of the object.
+inline Vec3f vectorDisplacement(const ShadingContext& c, const AttributeValue& tangents, Vec3f d) {
+  const Vec3f normal = normalToObject(c.toWorld, c.normal),
+              tangent = tangents.components == 0 ? Vec3f{} : tangents.xyz.value;
+  const Vec3f bitangent = safeNormalize(cross(normal, tangent)) * tangents.w[0];
+  return c.toWorld.vector(tangent * d.x + normal * d.y + bitangent * d.z);
+}
+
 // Reflectance of a dielectric for unpolarised light.
 inline float fresnel(float cosine, float eta) {
   const float c = std::abs(cosine), g2 = eta * eta - 1 + c * c;

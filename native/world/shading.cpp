@@ -240,11 +240,13 @@ void fill(const Scene& scene, const ShadedPoint& p, const Program& program, Shad
 
 }  // namespace
 
-void runProgram(const Scene& scene, const ShadedPoint& point, Slots& slots) {
+Vec3f runProgram(const Scene& scene, const ShadedPoint& point, Slots& slots) {
   const Program& program = *scene.materials[static_cast<size_t>(point.shape.material)].program;
   ShadingContext context;
   fill(scene, point, program, context);
   run(program, context, {scene.textures.data(), scene.images.data()}, slots);
+  const Vec3f n = context.normal;
+  return scene.zUp ? Vec3f{n.x, n.z, -n.y} : n;
 }
 
 Rgb skyRadiance(const Scene& scene, const World& world, Vec3f direction, const SkyRay& ray) {

@@ -22,8 +22,8 @@ struct ShadedPoint {
   float rayLength;
 };
 
-// What the program of the point's material makes there.
-void runProgram(const Scene& scene, const ShadedPoint& point, Slots& slots);
+// What the program of the point's material makes there. Returns the normal that it leaves: the point's, or a bent one.
+Vec3f runProgram(const Scene& scene, const ShadedPoint& point, Slots& slots);
 
 // A triangle's own point, for its light: seen from `from`, where a path of this time has come to by so many
 // scatterings.

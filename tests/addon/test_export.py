@@ -62,6 +62,19 @@ class Meshes(SceneTest):
         by_place = {tuple(p[:2]): tuple(uv) for p, uv in zip(mesh.positions.tolist(), mesh.uvs.tolist())}
         self.assertEqual(by_place[(1.0, 1.0)], (1.0, 0.5))
 
+    def test_tangents_that_a_displacement_lacks_are_noted(self):
+        material = textured_material()
+        tree = material.node_tree
+        moved = tree.nodes.new("ShaderNodeVectorDisplacement")
+        tree.links.new(tree.nodes.new("ShaderNodeTexNoise").outputs["Color"], moved.inputs["Vector"])
+        output = next(node for node in tree.nodes if node.bl_idname == "ShaderNodeOutputMaterial")
+        tree.links.new(moved.outputs[0], output.inputs["Displacement"])
+        quad = self.add_quad()
+        quad.data.materials.append(material)
+        self.assertTrue(any("its normals alone" in note for note in self.gather().notes))
+        quad.data.uv_layers.new(name="UV")
+        self.assertFalse(any("its normals alone" in note for note in self.gather().notes))
+
     def test_every_kind_of_object_with_a_surface(self):
         curve = bpy.data.curves.new("Curve", "CURVE")
         curve.dimensions = "3D"

@@ -408,13 +408,41 @@ class NotUnderstood(MaterialCase):
         edge = 0.5 * (s * s + t * t) / (0.04 + 0.96 * (6 / 7) ** 5)
         self.assertInputs(physical, baseColor=[0.04] * 3, specularTint=[edge] * 3)
 
-    def test_volume_and_displacement_are_noted(self):
-        diffuse = self.node("ShaderNodeBsdfDiffuse")
+    def test_volumes_are_noted(self):
         self.link(self.node("ShaderNodeVolumeScatter"), self.output, "Volume")
-        self.link(self.node("ShaderNodeDisplacement"), self.output, "Displacement")
-        self.export(diffuse)
+        self.export(self.node("ShaderNodeBsdfDiffuse"))
         self.assertNoted("volume")
-        self.assertNoted("displacement")
+
+    def test_displacement_bends_the_normal(self):
+        displacement = self.node("ShaderNodeDisplacement")
+        self.link(self.node("ShaderNodeTexNoise"), displacement, "Height")
+        self.link(displacement, self.output, "Displacement")
+        glossy = self.node("ShaderNodeBsdfGlossy" if compat.CYCLES == 3 else "ShaderNodeBsdfAnisotropic")
+        self.link(self.node("ShaderNodeNewGeometry"), glossy, "Color", "Normal")
+        data = self.export(glossy)
+        names = [o["op"] for o in data.program.operations]
+        self.assertEqual(names[names.index("bend") - 1], "bump")
+        self.assertIsNone(data.closures[0].normal)
+        # what is read afterwards is not what the height was told along
+        self.assertEqual([i > names.index("bend") for i, name in enumerate(names) if name == "normal"], [False, True])
+        self.assertEqual(data.closures[0].inputs["color"].result, len(names) - 1)
+        self.assertEqual(self.context.notes, [])
+
+    def test_a_displacement_that_moves_the_surface_is_noted(self):
+        self.link(self.node("ShaderNodeTexNoise"), self.output, "Displacement")
+        owner = self.material if hasattr(self.material, "displacement_method") else self.material.cycles
+        for method, moves in (("BUMP", False), ("DISPLACEMENT", True), ("BOTH", True)):
+            with self.subTest(method):
+                owner.displacement_method = method
+                self.context.notes.clear()
+                data = self.export(self.node("ShaderNodeBsdfDiffuse"))
+                self.assertTrue(data.program.reads("bend"))
+                self.assertEqual(any("moves the surface" in note for note in self.context.notes), moves)
+
+    def test_a_displacement_of_nothing_costs_nothing(self):
+        self.link(self.node("ShaderNodeDisplacement", Height=0.7), self.output, "Displacement")
+        data = self.export(self.node("ShaderNodeBsdfDiffuse"))
+        self.assertEqual(data.program is None, compat.CYCLES > 3)  # 3.4 turns normals towards the viewer
 
 
 class Trees(MaterialCase):

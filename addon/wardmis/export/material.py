@@ -16,8 +16,9 @@ from .model import ClosureData, ColorInput, MaterialData, ScalarInput, not_finit
 from .program.closures import WHITE, Closure, Shading
 from .program.reader import Reader
 from .program.surface import MOST_OPERATIONS, material_of
+from .program.vectors import bend_by_displacement
 from .socket_value import NotFinite
-from .tree import Owner, output_use
+from .tree import NodeUse, Owner, output_use
 
 
 @compat.deep_recursion()
@@ -77,17 +78,24 @@ def _surface_of(material: Any, owner: Owner) -> MaterialData:
     if output is None:
         owner.context.note(f"{owner.place} has no output node that is not muted; rendered as black, as in Cycles")
         return MaterialData(material.name)
-    linked = {}
+    linked: dict[str, NodeUse | None] = {}
     for name in ("Volume", "Displacement"):
         part = output_use(tree, name, owner)
-        linked[name] = part is not None and part.is_linked(name)
-        if part is not None and linked[name]:
-            part.note(f"has a {name.lower()}, which is not supported; it is left out")
+        linked[name] = part if part is not None and part.is_linked(name) else None
+    if linked["Volume"] is not None:
+        linked["Volume"].note("has a volume, which is not supported; it is left out")
     if output.source("Surface").is_nothing:
-        if linked["Volume"]:  # its surface is air, as in Cycles
+        if linked["Volume"] is not None:  # its surface is air, as in Cycles
             shading.closures.append(Closure(output, "transparent", 1.0, {"color": WHITE}))
             return material_of(material.name, shading)
         output.note("has no surface connected; rendered as black, as in Cycles")
         return MaterialData(material.name)
+    displacement = linked["Displacement"]
+    if displacement is not None:
+        if compat.displacement_method(material) != "BUMP":
+            displacement.note(
+                "moves the surface, which is not supported; it stays where it is, and is shown as bump alone"
+            )
+        bend_by_displacement(displacement, shading.p)
     shading.read(output, "Surface")
     return material_of(material.name, shading)

@@ -92,6 +92,9 @@ class ScalarInput:
     result: int | None = None
 
 
+OF_TANGENTS = {"tangent-uv", "normal-map-tangent", "vector-displacement"}
+
+
 @dataclass
 class ProgramData:
     """Operations as docs/scene-format.md, "Programs", has them: op, in, and parameters by name."""
@@ -101,13 +104,12 @@ class ProgramData:
     @property
     def uv_sets(self) -> set[str]:
         """The UV sets that it reads, the one without a name being "". Tangents are made of them."""
-        names = {"uv", "tangent-uv", "normal-map-tangent"}
-        return {o.get("set", "") for o in self.operations if o["op"] in names}
+        return {o.get("set", "") for o in self.operations if o["op"] in {"uv", *OF_TANGENTS}}
 
     @property
     def tangents(self) -> set[str]:
         """The UV sets whose tangents at vertices it needs."""
-        return {o.get("set", "") for o in self.operations if o["op"] in {"tangent-uv", "normal-map-tangent"}}
+        return {o.get("set", "") for o in self.operations if o["op"] in OF_TANGENTS}
 
     @property
     def attributes(self) -> set[str]:

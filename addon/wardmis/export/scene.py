@@ -358,6 +358,12 @@ class _Gatherer:
         geometry = self._geometry[key]
         if geometry is None:
             return None
+        programs = (self.materials[m].program for m in materials)
+        if not geometry.tangents and any(p is not None and p.reads("vector-displacement") for p in programs):
+            self.context.note(
+                f"object '{self.context.owner}': its material displaces along tangents of a UV map, which it has not; it is displaced along "
+                "its normals alone"
+            )
         if any(is_matte(self.materials[m]) for m in materials) and has_bent_normals(geometry):
             for m in set(materials):
                 self.materials[m] = by_rules_of_cycles(self.materials[m])

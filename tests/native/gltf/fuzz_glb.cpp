@@ -41,7 +41,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {  // NO
     for (const Material& m : scene.materials) {
       if (!m.program) continue;
       Slots slots;
-      run(*m.program, ShadingContext(), {scene.textures.data(), scene.images.data()}, slots);
+      ShadingContext context;
+      run(*m.program, context, {scene.textures.data(), scene.images.data()}, slots);
     }
   } catch (const Error&) {
   }

@@ -158,6 +158,33 @@ TEST(ProgramRender, NormalsTurnTheSurface) {
   EXPECT_NEAR(measure(renderScene(scene, settings(4))).mean, 0.8, 1e-5);
 }
 
+// A bent normal is that of every closure that has none of its own, and of what is computed after it, in both forms.
+TEST(ProgramRender, NormalsAreBent) {
+  Scene scene;
+  scene.materials = {ward({1, 1, 1}, {0, 0, 0}, 0.1f, WardVariant::kWardGmd)};
+  addPlane(scene, 1, 0);
+  Light sun;
+  sun.type = LightType::kSun;
+  sun.emitted = {kPi<float>, kPi<float>, kPi<float>};
+  sun.toWorld = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}};
+  scene.lights = {sun};
+  scene.zUp = true;
+  lookFrom(scene, 0, 0.9f, 4);
+  Material& m = scene.materials[0];
+  const auto mean = [&] { return measure(renderScene(scene, settings(4))).mean; };
+  const double turned = 0.8;
+  EXPECT_NEAR(mean(), 1, 1e-5);
+  setProgram(m, {{{"op", "bend"}, {"in", {{0, -0.8, 0.6}}}}}, {});
+  EXPECT_NEAR(mean(), turned, 1e-5);
+  Closure diffuse;
+  diffuse.colors = {{{1, 1, 1}, {}}}, diffuse.scalars = {{0, {}}};
+  m.closures = {diffuse};
+  EXPECT_NEAR(mean(), turned, 1e-5);
+  setProgram(m, {{{"op", "bend"}, {"in", {{0, -0.8, 0.6}}}}, {{"op", "normal"}}}, {1});
+  m.closures[0].normal = 0;
+  EXPECT_NEAR(mean(), turned, 1e-5);
+}
+
 // Of a closure that is there for shadow rays alone, and of one that is not: a sheet between a plane and a sun.
 TEST(ProgramRender, ShadowRaysAreToldFromOthers) {
   for (const bool forShadows : {false, true}) {

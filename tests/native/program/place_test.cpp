@@ -160,6 +160,31 @@ TEST(Place, ChangesOfSpace) {
              world);
 }
 
+// What is computed afterwards has another normal, and what was before has its own.
+TEST(Place, NormalsAreBent) {
+  const ShadingContext c = place();
+  const json both = {{{"op", "normal"}},
+                     {{"op", "bend"}, {"in", {{0, 3, 0}}}},
+                     {{"op", "normal"}},
+                     {{"op", "vector-multiply-add"}, {"in", {{{"result", 0}}, {10, 10, 10}, {{"result", 2}}}}}};
+  expectNear(both, {0, 7, 8}, c);
+  const json none = {{{"op", "bend"}, {"in", {{0, 0, 0}}}}, {{"op", "normal"}}};
+  expectNear(none, {0, 0.6, 0.8}, c);
+}
+
+TEST(Place, VectorsAreDisplacedAlongTangents) {
+  ShadingContext c = place();
+  c.normal = {0, 0, 1};
+  const json moved = op("vector-displacement", {{1, 2, 3}});
+  expectNear(moved, {0, 0, 8}, c);  // without tangents along the normal alone, which the object makes 4 times as long
+  c.attributes[0].xyz = {{1, 0, 0}, {}, {}};
+  c.attributes[0].components = 4;
+  c.attributes[0].w[0] = 1;
+  expectNear(moved, {-6, 1, 8}, c);
+  c.attributes[0].w[0] = -1;
+  expectNear(moved, {6, 1, 8}, c);
+}
+
 TEST(Place, NormalMaps) {
   ShadingContext c;
   c.normal = c.trueNormal = c.interpolatedNormal = {0, 0, 1};

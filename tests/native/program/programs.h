@@ -43,7 +43,7 @@ inline void setProgram(Material& m, const json& operations, const std::vector<in
 }
 
 // What the last of the operations makes: one number or three.
-inline std::vector<float> values(const Program& p, const ShadingContext& context = {}, TextureAccess textures = {}) {
+inline std::vector<float> values(const Program& p, ShadingContext context = {}, TextureAccess textures = {}) {
   Slots slots;
   slots.fill(-12345);
   run(p, context, textures, slots);

@@ -23,6 +23,11 @@ class Result:
     kind: str
 
 
+# what tells the normal of the surface, which `bend` changes
+BY_NORMAL = {"normal", "object-normal", "reflection", "tangent", "tangent-uv", "vector-displacement"} | {
+    f"normal-map-{space}" for space in ("tangent", "object", "world")
+}
+
 Vector = tuple[float, float, float]
 Value = float | Vector | Result
 
@@ -62,6 +67,7 @@ class Builder:
     def __init__(self) -> None:
         self.operations: list[Operation] = []
         self._known: dict[Operation, int] = {}
+        self.bent: Value | None = None  # the normal that bend() gave the surface
 
     def __call__(self, name: str, /, *arguments: Value, **parameters: Any) -> Value:
         kinds, result = SIGNATURES[name]
@@ -100,9 +106,14 @@ class Builder:
     def complement(self, a: Value) -> Value:
         return self("subtract", 1.0, a)
 
+    def bend(self, normal: Value) -> None:
+        """From here on this is the surface's normal: of what is computed later, and of its closures."""
+        self.bent = self("bend", normal)
+        self._known = {o: index for o, index in self._known.items() if o.name not in BY_NORMAL}
+
     def program(self, wanted: Iterable[Value]) -> tuple[ProgramData | None, dict[int, int]]:
         """What computes these values, without what they do not need; and the new numbers of its operations."""
-        needed = {value.index for value in wanted if isinstance(value, Result)}
+        needed = {value.index for value in (*wanted, self.bent) if isinstance(value, Result)}
         for index in range(len(self.operations) - 1, -1, -1):
             if index in needed:
                 needed |= {a.index for a in self.operations[index].arguments if isinstance(a, Result)}

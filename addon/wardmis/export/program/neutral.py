@@ -35,8 +35,6 @@ def _strength(use: NodeUse, _output: Any, p: Reader) -> tuple[Value, str]:
 NEUTRAL: dict[str, Neutral] = {
     f"ShaderNode{name}": neutral
     for name, neutral in {
-        "Displacement": _outputs(),
-        "VectorDisplacement": _outputs(),
         "NewGeometry": _outputs(Pointiness=0.5, Random_Per_Island=0.5),
         "HairInfo": _outputs(),
         "ParticleInfo": _outputs(Random=0.5),

@@ -62,6 +62,10 @@ class Reader(Builder):
         self.shift: tuple[str, float] = ("none", 1.0)
         self._outputs: dict[tuple[Any, ...], Value | None] = {}  # None: being read
 
+    def bend(self, normal: Value) -> None:
+        super().bend(normal)
+        self._outputs = {}
+
     def place(self, name: str, /, **parameters: Any) -> Value:
         """An operation that tells where the program runs; what is elsewhere than on a surface, as Cycles has it there."""
         # of all sets of UVs a lamp has the one without a name

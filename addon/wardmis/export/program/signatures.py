@@ -26,7 +26,7 @@ _TABLE = {
     "vv>n": "vector-dot vector-distance image-box-alpha",
     "vn>v": "vector-scale normal-map-tangent normal-map-object normal-map-world gamma white-noise-color",
     "v>v": "vector-normalize vector-round vector-floor vector-ceil vector-fraction vector-absolute vector-sign vector-sin vector-cos "
-    "vector-tan vector-transform mapping rgb-to-hsv hsv-to-rgb rgb-to-hsl hsl-to-rgb image environment",
+    "vector-tan vector-transform vector-displacement bend mapping rgb-to-hsv hsv-to-rgb rgb-to-hsl hsl-to-rgb image environment",
     "vvvvv>v": "vector-map-range vector-map-range-smoothstep vector-map-range-smootherstep",
     "vvvvvv>v": "vector-map-range-stepped",
     "nvv>v": "mix-vector mix mix-add mix-multiply mix-screen mix-overlay mix-subtract mix-divide mix-difference mix-exclusion mix-darken "

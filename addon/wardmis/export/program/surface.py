@@ -115,7 +115,7 @@ def _short(name: str, p: Reader, closures: list[Closure]) -> MaterialData | None
     normals = {c.normal for c in closures}
     if not simple or len(normals) > 1 or len(set(map(_shape, wards))) > 1:
         return None
-    if not wards and normals - {None}:  # which Cycles' rules for light at other normals are for
+    if not wards and (normals - {None} or p.bent is not None):  # which Cycles' rules for light at other normals are for
         return None
     if wards and not is_constant(wards[0].inputs["rotation"]):
         return None

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from ... import compat
@@ -83,18 +84,55 @@ def _normal_map(use: NodeUse, _output: Any, p: Reader) -> Value:
     return p(f"normal-map-{space}", p.read(use, "Color"), p.read(use, "Strength"), **parameters)
 
 
+def _heights(p: Reader, width: float, height: Callable[[], Value]) -> list[Value]:
+    """Here, and a step of a pixel's width aside."""
+    before = p.shift
+    heights = []
+    for direction in ("none", "x", "y"):
+        p.shift = (direction, width)
+        heights.append(height())
+    p.shift = before
+    return heights
+
+
+def bend_by_displacement(output: NodeUse, p: Reader) -> None:
+    """What Cycles makes of a displacement where it moves nothing: a bump of the surface's own normal, as high as it reaches along that."""
+    own, width = p("normal"), compat.DISPLACEMENT_WIDTH
+    heights = _heights(p, width, lambda: p("vector-dot", p.read(output, "Displacement"), own))
+    if len(set(heights)) > 1 or compat.CYCLES == 3:  # 3.4 turns it towards the viewer, too
+        p.bend(p("bump", *heights, 1.0, 1.0, own, width=width, version=compat.CYCLES))
+
+
+def _displacement(use: NodeUse, _output: Any, p: Reader) -> Value:
+    along = normal(use, p)
+    height = p("subtract", p.read(use, "Height"), p.read(use, "Midlevel"))
+    height = p.multiply(height, p.read(use, "Scale"))
+    if use.node.space != "OBJECT":
+        return p.multiply(along, height)
+    spaces = {"from": "world", "to": "object"}
+    along = p("vector-transform", along, type="normal", **spaces, version=max(compat.CYCLES, 4))
+    return _moved_to_world(p, p.multiply(along, height))
+
+
+def _vector_displacement(use: NodeUse, _output: Any, p: Reader) -> Value:
+    midlevel = p.vector(p.read(use, "Midlevel"))
+    moved = p.multiply(p("vector-subtract", p.read(use, "Vector"), midlevel), p.read(use, "Scale"))
+    if use.node.space == "TANGENT":
+        return p("vector-displacement", moved)
+    return _moved_to_world(p, moved) if use.node.space == "OBJECT" else moved
+
+
+def _moved_to_world(p: Reader, moved: Value) -> Value:
+    return p("vector-transform", moved, type="vector", **{"from": "object", "to": "world"}, version=compat.CYCLES)
+
+
 def _bump(use: NodeUse, _output: Any, p: Reader) -> Value:
     """Without a height it hands on its normal."""
     given = normal(use, p)
     if not use.is_linked("Height"):
         return given
     width = p.number(use, "Filter Width") if use.has("Filter Width") else 1.0
-    before = p.shift
-    heights = []
-    for direction in ("none", "x", "y"):
-        p.shift = (direction, width)
-        heights.append(p.read(use, "Height"))
-    p.shift = before
+    heights = _heights(p, width, lambda: p.read(use, "Height"))
     distance = p.read(use, "Distance")
     if use.node.invert:
         distance = p("multiply", distance, -1.0)
@@ -110,4 +148,6 @@ NODES = {
     "Normal": _normal,
     "NormalMap": _normal_map,
     "Bump": _bump,
+    "Displacement": _displacement,
+    "VectorDisplacement": _vector_displacement,
 }
