@@ -334,7 +334,7 @@ class Images(unittest.TestCase):
 
 
 class World(unittest.TestCase):
-    def test_missing_image_of_the_sky_is_named_and_grey(self):
+    def test_missing_image_of_the_sky_is_named_and_magenta(self):
         world = bpy.data.worlds.new("W")
         self.addCleanup(lambda: bpy.data.worlds.remove(world))
         world.use_nodes = True
@@ -344,5 +344,5 @@ class World(unittest.TestCase):
         self.addCleanup(lambda: bpy.data.images.remove(bpy.data.images["Sky"]))
         node.image.source, node.image.filepath = "FILE", "/nowhere/sky.exr"
         context = ExportContext(export_image)
-        self.assertEqual([sky.radiance for sky in export_worlds(world, context)], [(0.5, 0.5, 0.5)])
+        self.assertEqual([sky.radiance for sky in export_worlds(world, context)], [(1, 0, 1)])
         self.assertIn("/nowhere/sky.exr", context.notes[0])

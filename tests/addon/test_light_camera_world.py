@@ -593,10 +593,10 @@ class World(SceneTest):
         self.assertEqual((ours.program, other.program.operations[0]["op"]), (None, "ray-depth"))
         self.assertIn("where the world is aimed at", scene.notes[0])
 
-    def test_missing_image_is_grey(self):
+    def test_missing_image_is_magenta(self):
         self.environment(None).image = None
         scene = self.gather()
-        self.assertEqual(self.only(scene).radiance, (1, 1, 1))
+        self.assertEqual(self.only(scene).radiance, (2, 0, 2))
         self.assertIn("world 'World': node 'Environment Texture' (Environment Texture) has no image", scene.notes[0])
 
     def test_worlds_of_other_nodes(self):

@@ -160,7 +160,9 @@ class Picture:
     def export(self) -> ImageData:
         """A missing one becomes a magenta texel."""
         if self.missing():
-            return ImageData(self.name, "linear", pixels=np.array([[MISSING]], np.float32))
+            texel = np.array([[MISSING]], np.float32)  # whose edge is filtered as that of its colour space
+            space = "sRGB" if self.is_encoded else "linear"
+            return ImageData(self.name, space, pixels=texel, filter_encoded=self.is_encoded)
         mime_type = self.mime_type
         # of later tiles there are no pixels; deviations() names their colour space
         readable = self.image.colorspace_settings.name in COLOR_SPACES or self._is_later_tile

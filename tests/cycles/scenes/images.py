@@ -6,7 +6,25 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from stage import add, checker, diffuse, face_on, feed, gradient, image, material, painted, saved_image, scene, sheet
+from stage import (
+    add,
+    ball,
+    camera,
+    checker,
+    diffuse,
+    face_on,
+    feed,
+    floor,
+    gradient,
+    image,
+    lamp,
+    material,
+    painted,
+    saved_image,
+    scene,
+    sheet,
+    sky,
+)
 from wardmis import compat
 
 SAMPLES = 16  # of next to no noise
@@ -98,6 +116,32 @@ def missing():
     picture = bpy.data.images.new("gone", 4, 4)
     picture.source, picture.filepath = "FILE", "//no-such-file.png"
     shows(picture)
+
+
+@scene
+def missing_light():
+    """Of a sky, a lamp and a surface, too: of no image, of a file that is not there, and clipped."""
+    gone = bpy.data.images.new("gone", 4, 4)
+    gone.source, gone.filepath = "FILE", "//no-such-file.png"
+    tree = sky((1, 1, 1), 0.2)
+    lost = add(tree, "TexEnvironment", {"image": gone})
+    tree.links.new(lost.outputs[0], tree.nodes["Background"].inputs["Color"])
+    for place, picture in ((-2, None), (2, gone)):
+        light = lamp("AREA", (place, -2, 3), 60, size=1)
+        light.data.use_nodes = True
+        tree = light.data.node_tree
+        lost = add(tree, "TexImage", {"image": picture})
+        vector = add(tree, "TexCoord").outputs["Normal"]
+        tree.links.new(vector, lost.inputs["Vector"])
+        tree.links.new(lost.outputs[0], tree.nodes["Emission"].inputs["Color"])
+    floor()
+    of, tree, output = material()
+    scaled = add(tree, "Mapping", Vector=add(tree, "TexCoord").outputs["Object"], Scale=(0.4, 0.4, 0.4))
+    lost = add(tree, "TexImage", {"image": gone, "extension": "CLIP"}, Vector=scaled.outputs[0])
+    light = add(tree, "Emission", Color=lost.outputs[0], Strength=2.0)
+    tree.links.new(light.outputs[0], output.inputs["Surface"])
+    ball(of)
+    camera()
 
 
 @scene

@@ -48,7 +48,7 @@ class Shading:
         if source.is_nothing:
             return
         if source.socket.type != "SHADER":  # a colour in a shader's place shines, as in Cycles
-            self.emit(self.p.vector(self.p.read_light(use, key)), weight)
+            self.emit(self.p.vector(self.p.read(use, key)), weight)
             return
         origin = source.use
         assert origin is not None
@@ -271,7 +271,7 @@ def _conductor(n: Value, k: Value) -> tuple[Value, Value]:
 
 
 def _emission(use: NodeUse, s: Shading, weight: Value) -> None:
-    s.emit(s.p.multiply(s.p.read_light(use, "Color"), s.p.read_light(use, "Strength")), weight)
+    s.emit(s.p.multiply(s.p.read(use, "Color"), s.p.read(use, "Strength")), weight)
 
 
 # ours -> Blender's names
@@ -354,7 +354,7 @@ def _principled(use: NodeUse, s: Shading, weight: Value) -> None:
     if not is_zero(opaque):
         normal = p.linked(use, "Normal")
         s.closures.append(Closure(use, "principled", opaque, inputs, parameters, normal, tangent))
-    light = p.multiply(p.read_light(use, compat.PRINCIPLED_EMISSION), p.read_light(use, "Emission Strength"))
+    light = p.multiply(p.read(use, compat.PRINCIPLED_EMISSION), p.read(use, "Emission Strength"))
     if (
         compat.CYCLES >= 4
         and not is_zero(light)

@@ -54,7 +54,6 @@ class Reader(Builder):
     def __init__(self, kind: str = "material") -> None:
         super().__init__()
         self.kind = kind
-        self.is_light = kind != "material"  # what is read colours light: a lost image is grey then, not magenta
         self.lamp: Lamp | None = None
         self.discs = True  # whether skies show the discs of their suns
         # of the suns shown: direction in the world, None if that is not fixed, and angle
@@ -88,14 +87,6 @@ class Reader(Builder):
         if implicit is not None and use.is_left_open(key, source):
             return implicit()
         return self.converted(self._first(use, source, key), source.kinds)
-
-    def read_light(self, use: NodeUse, key: str | int) -> Value:
-        """The same of an input for light that is given off."""
-        before, self.is_light = self.is_light, True
-        try:
-            return self.read(use, key)
-        finally:
-            self.is_light = before
 
     def optional(self, use: NodeUse, name: str, default: float = 0.0) -> Value:
         """A number that only some settings or versions of the node have."""
@@ -161,7 +152,7 @@ class Reader(Builder):
         return self._given(source.use, source.socket, use, key)
 
     def _given(self, origin: NodeUse, output: Any, use: NodeUse, key: str | int) -> Value:
-        place = (origin.place, output.identifier, self.shift, self.is_light, self.discs)
+        place = (origin.place, output.identifier, self.shift, self.discs)
         if place in self._outputs:
             known = self._outputs[place]
             if known is None:

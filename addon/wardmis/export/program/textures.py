@@ -17,9 +17,9 @@ from .reader import Reader
 
 def _image(use: NodeUse, output: Any, p: Reader) -> Value:
     node = use.node
-    found = _picture(use, p.is_light)
+    found = _picture(use)
     if found is None:
-        return _missing(output, p.is_light)
+        return _missing(output)
     tiled = node.image.source == "TILED" and node.projection != "BOX"
     parameters = _texture(use, found, node.extension, tiled)
     vector = coordinates(use, p, "uv")
@@ -32,9 +32,9 @@ def _image(use: NodeUse, output: Any, p: Reader) -> Value:
 
 
 def _environment(use: NodeUse, output: Any, p: Reader) -> Value:
-    found = _picture(use, p.is_light)
+    found = _picture(use)
     if found is None:
-        return _missing(output, p.is_light)
+        return _missing(output)
     projection = {} if use.node.projection == "EQUIRECTANGULAR" else {"projection": "mirror-ball"}
     alpha = "-alpha" if output.name == "Alpha" else ""
     _note_first_tile(use)
@@ -42,19 +42,18 @@ def _environment(use: NodeUse, output: Any, p: Reader) -> Value:
     return p(f"environment{alpha}", coordinates(use, p, "position"), **projection, **parameters)
 
 
-def _picture(use: NodeUse, is_light: bool) -> Picture | None:
-    """None, and a note, where there is nothing to show. `is_light`: it colours light."""
+def _picture(use: NodeUse) -> Picture | None:
+    """None, and a note, where there is nothing to show."""
     node = use.node
-    instead = "grey light is" if is_light else "magenta is"
     if node.image is None:
-        use.note(f"has no image; {instead} shown instead")
+        use.note("has no image; magenta is shown instead")
         return None
     found = picture_of(node.image, _shows_alpha(use), node.image_user, use.owner.context.frame)
     reason = found.missing()
     if reason is not None:
-        use.note(f"needs an image; {reason}; {instead} shown instead")
+        use.note(f"needs an image; {reason}; magenta is shown instead")
         is_clipped = compat.MISSING_IMAGES_ARE_CLIPPED and getattr(node, "extension", "") == "CLIP"
-        return found if is_clipped and not is_light and node.image.source != "TILED" else None
+        return found if is_clipped and node.image.source != "TILED" else None
     for deviation in found.deviations():
         use.note(f"shows {deviation}")
     return found
@@ -95,11 +94,8 @@ def _note_first_tile(use: NodeUse) -> None:
         use.note(f"shows tile {image.tiles[0].number} of image '{image.name}' alone, as in Cycles")
 
 
-UNKNOWN_LIGHT = (0.5, 0.5, 0.5)  # whose image cannot be shown
-
-
-def _missing(output: Any, is_light: bool) -> Value:
-    return 1.0 if output.name == "Alpha" else UNKNOWN_LIGHT if is_light else MISSING
+def _missing(output: Any) -> Value:
+    return 1.0 if output.name == "Alpha" else MISSING
 
 
 NODES = {"TexImage": _image, "TexEnvironment": _environment}
