@@ -8,7 +8,7 @@ from typing import Any
 
 import bpy
 
-from . import compat, light_paths
+from . import compat, film, light_paths
 from .engine import WARDMIS_RenderEngine
 from .layout import draw_text
 from .passes import COMPONENTS, PARTS
@@ -193,9 +193,19 @@ class WARDMIS_RENDER_PT_film(RenderPanel, bpy.types.Panel):
 
     def draw(self, context: Any) -> None:
         settings, column = context.scene.wardmis, self._column()
-        column.prop(settings, "film_exposure")
-        column.prop(settings, "filter_type")
-        _row(column, settings.filter_type != "box").prop(settings, "filter_width")
+        column.prop(settings, "film", text="Exposure and Filter")
+        if settings.film == "own":
+            column.prop(settings, "film_exposure")
+            column.prop(settings, "filter_type")
+            _row(column, settings.filter_type != "box").prop(settings, "filter_width")
+            theirs = film.of_cycles(context.scene)
+            if theirs != film.in_force(context.scene):
+                draw_text(column, f"Cycles has {theirs} here", icon="INFO")
+        elif hasattr(context.scene, "cycles"):
+            cycles = context.scene.cycles
+            column.prop(cycles, "film_exposure")
+            column.prop(cycles, "pixel_filter_type", text="Filter")
+            _row(column, cycles.pixel_filter_type != "BOX").prop(cycles, "filter_width", text="Width")
         column.prop(context.scene.render, "film_transparent", text="Transparent")
 
 

@@ -113,6 +113,10 @@ BOUNCES = (
         "The limits that Cycles has in this scene, in its Light Paths panel: what it leaves out is left out here",
     ),
 )
+FILMS = (
+    ("cycles", "As Cycles", "What Cycles has in this scene, in its Film panel, so that both are equally bright"),
+    ("own", "Own", "The settings given here"),
+)
 STOPS = (
     ("samples", "Samples", "Stop after a number of samples in each pixel, however long they take"),
     (
@@ -287,6 +291,9 @@ class WARDMIS_PG_scene(bpy.types.PropertyGroup):
         name="Animated Seed",
         description="Another seed in each frame, so that the noise does not stand still in an animation; as Cycles derives it",
         default=False,
+    )
+    film: EnumProperty(
+        name="Film", description="Whose exposure and pixel filter the film has", items=FILMS, default="cycles"
     )
     filter_type: EnumProperty(
         name="Filter",

@@ -283,7 +283,8 @@ class CyclesSettings(ComparisonTest):
 
     def test_biases_are_off_and_the_frame_is_the_same(self):
         settings, cycles = self.scene.wardmis, self.scene.cycles
-        settings.filter_type, settings.filter_width, settings.film_exposure = "gaussian", 2.0, 1.5
+        settings.film, settings.filter_type = "own", "gaussian"
+        settings.filter_width, settings.film_exposure = 2.0, 1.5
         settings.max_depth = 4
         cycles.sample_clamp_indirect, cycles.samples, cycles.seed = 10, 77, 5
         self.scene.render.use_persistent_data = True
@@ -364,6 +365,16 @@ class CyclesSettings(ComparisonTest):
         self.scene.wardmis.bounces = "cycles"
         self.during_a_render(as_is=True)
         self.assertNotIn("Cycles' paths", " ".join(self.manifest()["notes"]))
+
+    def test_film_that_differs_is_said(self):
+        settings, cycles = self.scene.wardmis, self.scene.cycles
+        cycles.film_exposure, said = 1.75, "Cycles' film is WardMIS' own, not the scene's of exposure 1.75"
+        self.assertEqual(self.during_a_render()["film_exposure"], 1.75)
+        self.assertNotIn(said, " ".join(self.manifest()["notes"]))
+        shutil.rmtree(self.folder)
+        settings.film = "own"
+        self.assertEqual(self.during_a_render()["film_exposure"], 1)
+        self.assertIn(said, " ".join(self.manifest()["notes"]))
 
     def test_every_setting_exists(self):
         film = {"filter": {"type": "box", "width": 1.0}, "exposure": 1.0}

@@ -415,10 +415,16 @@ class Film(SceneTest):
         )
         render.resolution_x, render.resolution_y, render.resolution_percentage = 333, 101, 50
         render.film_transparent = True
-        settings.filter_type, settings.film_exposure = "box", 2
+        settings.filter_type, settings.film_exposure, settings.film = "box", 2, "own"
         film = self.gather().film
         self.assertEqual((film.resolution, film.border), ((166, 50), (0, 0, 166, 50)))
         self.assertEqual((film.filter_type, film.exposure, film.transparent), ("box", 2, True))
+
+    def test_film_is_cycles_unless_told(self):
+        cycles = self.scene.cycles
+        cycles.film_exposure, cycles.pixel_filter_type, cycles.filter_width = 1.75, "GAUSSIAN", 2.5
+        film = self.gather().film
+        self.assertEqual((film.filter_type, film.filter_width, film.exposure), ("gaussian", 2.5, 1.75))
 
     def test_transparent_glass_is_named(self):
         cycles = self.scene.cycles

@@ -19,7 +19,7 @@ from typing import Any
 
 import bpy
 
-from .. import light_paths
+from .. import film, light_paths
 from ..exr import read_header
 from ..lock import alone
 from . import cycles_settings, interrupt
@@ -77,6 +77,7 @@ def render_cycles(folder: Path, scene_file: SceneFile, plan: CyclesPlan, progres
     scene, layer = bpy.context.scene, bpy.context.view_layer
     require_cycles(scene)
     folder.mkdir(parents=True, exist_ok=True)
+    own_film = film.of_cycles(scene)
     settings = list(cycles_settings.frame(scene, layer, scene_file.film, plan.threads))
     lost = []  # of the settings that are to be kept
     if not plan.as_is:
@@ -87,6 +88,10 @@ def render_cycles(folder: Path, scene_file: SceneFile, plan: CyclesPlan, progres
         progress({"event": "warning", "message": WITHOUT_DENOISER})
     with overridden(settings), alone(folder):
         about = _about(scene, layer, scene_file, plan, lost)
+        if own_film != film.in_force(scene):
+            about["notes"].append(
+                f"Cycles' film is WardMIS' own, not the scene's of {own_film}: the same with its Film set to As Cycles"
+            )
         x0, y0, x1, y1 = scene_file.film["border"]
         manifest = Manifest(folder / "manifest.json", about, (y1 - y0, x1 - x0))
         for path in manifest.damaged:
@@ -104,7 +109,7 @@ def _about(scene: Any, layer: Any, scene_file: SceneFile, plan: CyclesPlan, lost
     ]
     if plan.as_is:
         notes.append(
-            "Cycles' settings are the scene's own, with whatever bias they bring; only filter, frame, seed and samples are set"
+            "Cycles' settings are the scene's own, with whatever bias they bring; only exposure, filter, frame, seed and samples are set"
         )
         notes += lost
         own, limits = light_paths.of_cycles(scene), light_paths.in_force(scene)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .. import compat
+from .. import compat, film
 from .context import ExportError
 from .model import CameraData, FilmData
 
@@ -47,16 +47,9 @@ def border(render: Any, resolution: tuple[int, int]) -> tuple[int, int, int, int
 
 
 def export_film(scene: Any) -> FilmData:
-    settings = scene.wardmis
-    resolution = full_resolution(scene.render)
-    return FilmData(
-        resolution,
-        border(scene.render, resolution),
-        settings.filter_type.lower().replace("_", "-"),
-        settings.filter_width,
-        settings.film_exposure,
-        scene.render.film_transparent,
-    )
+    resolution, of = full_resolution(scene.render), film.in_force(scene)
+    transparent = scene.render.film_transparent
+    return FilmData(resolution, border(scene.render, resolution), of.filter, of.width, of.exposure, transparent)
 
 
 def export_camera(camera: Any, render: Any) -> CameraData:

@@ -16,7 +16,6 @@ def things():
 def filtered(kind, width=1.5):
     made = things()
     made.cycles.pixel_filter_type, made.cycles.filter_width = kind, width
-    made.wardmis.filter_type, made.wardmis.filter_width = kind.lower().replace("_", "-"), width
 
 
 @scene
@@ -37,7 +36,7 @@ def wide_filter():
 @scene
 def exposure():
     made = things()
-    made.cycles.film_exposure = made.wardmis.film_exposure = 2.5
+    made.cycles.film_exposure = 2.5
 
 
 @scene
