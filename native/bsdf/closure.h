@@ -26,7 +26,13 @@ template <class Add>
 inline void addLobe(int version, Lobe l, Add&& add) {
   const auto gives = [](Rgb w) { return std::abs(w.x + w.y + w.z) >= 3 * kLeastWeight; };
   if (!gives(l.weight) && !(isGlass(l.kind) && gives(l.through))) return;
-  const bool smooth = l.ax * l.ay <= (version == 3 ? 1e-7f : 2e-10f);
+  bool smooth = l.ax * l.ay <= (version == 3 ? 1e-7f : 2e-10f);
+  if (smooth && version == 3 && (l.kind == LobeKind::kGgx || l.kind == LobeKind::kBeckmann)) {
+    // which asks both axes together, and takes the one mirror's direction from facets that may be rough along one
+    if (l.byFirstAxis) l.ay = l.ax, l.byFirstAxis = false;
+    smooth = std::max(l.ax, l.ay) <= 1e-3f;
+    if (!smooth) l.masking = Masking::kOfView, l.ax = std::max(l.ax, 1e-4f), l.ay = std::max(l.ay, 1e-4f);
+  }
   const bool straight = smooth || std::abs(l.eta - 1) < 1e-4f;
   if (straight) l.unseenFacets = l.refractsUp = false;
   switch (l.kind) {
@@ -105,6 +111,9 @@ inline void addTransparent(int version, Rgb weight, Add&& add) {
 // The color that light reflected more than once takes: since 4.0 as it is, also where it is brighter than white.
 inline Rgb compensated(int version, Rgb color) { return version == 3 ? clampedTo1(color) : color; }
 
+// Of a lobe that Cycles 3.4 follows light from facet to facet for.
+inline void atLeastWalked3(Lobe& l) { l.ax = std::max(l.ax, 1e-4f), l.ay = std::max(l.ay, 1e-4f); }
+
 // Glossy: color decides over multiple reflections alone; weight contains it, too.
 template <class Add>
 inline void addGlossy(int version, Glossy distribution, Rgb weight, Rgb color, float ax, float ay, float cosThetaO,
@@ -117,6 +126,7 @@ inline void addGlossy(int version, Glossy distribution, Rgb weight, Rgb color, f
   l.byFirstAxis = version == 3 && kind == LobeKind::kBeckmann && ax != ay;
   if (distribution == Glossy::kMultiGgx) {
     l.masking = Masking::kCorrelated;
+    if (version == 3) atLeastWalked3(l);
     l.weight *= compensate(reflectionAlbedo(tableRoughness(l), cosThetaO), compensated(version, color)).factor();
   }
   addLobe(version, l, add);

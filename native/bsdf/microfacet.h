@@ -20,7 +20,8 @@ namespace wardmis {
 
 enum class Distribution : uint8_t { kGgx, kBeckmann };
 // How the masking of the two directions goes together. Cycles: as independent until 3.4, correlated by height since.
-enum class Masking : uint8_t { kSeparable, kCorrelated };
+// kOfView: what facets send to the view is masked there alone.
+enum class Masking : uint8_t { kSeparable, kCorrelated, kOfView };
 
 template <class T>
 struct MicrofacetValue {
@@ -77,6 +78,7 @@ inline T maskedExactly(Vec3<T> w, T ax, T ay) {
 // G2 / |wo.z| over the two directions' S: what D/4 is multiplied by.
 template <class T>
 inline T maskingOver(Masking masking, T zi, T si, T zo, T so) {
+  if (masking == Masking::kOfView) return T(1) / (zo + so);
   return masking == Masking::kSeparable ? zi / ((zi + si) * (zo + so)) : zi / (zo * zi + si * zo + so * zi);
 }
 

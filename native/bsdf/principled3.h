@@ -44,6 +44,7 @@ inline void addSpecular3(const Principled3& p, Rgb weight, float cosThetaO, Add&
                     p.baseColor * p.metallic);
   if (p.multiscatter && p.roughness > 0.075f) {
     l.masking = Masking::kCorrelated;
+    atLeastWalked3(l);
     l.weight *= compensate(reflectionAlbedo(tableRoughness(l), cosThetaO), blendedMean(l.f0, l.eta)).factor();
   }
   addLobe(3, l, add);
@@ -78,11 +79,19 @@ inline void addGlass3(const Principled3& p, Rgb weight, float cosThetaO, Add&& a
 
 }  // namespace detail
 
+// Whether Cycles makes a number that is none of glass of so low an index, which takes all light of the surface: its
+// reflectance at normal incidence is 1 to a float, and divides.
+inline bool isLost3(const Principled3& p) {
+  const float eta = std::max(p.ior, 1e-5f);
+  return !p.backfacing && !(eta * eta - 1 + 1 > 0);
+}
+
 // cosBase, cosCoat: of the view with the normal and the clearcoat normal.
 template <class Add>
 inline void expand(const Principled3& p, Rgb weight, float cosBase, float cosCoat, Add&& add) {
   const float metallic = std::clamp(p.metallic, 0.0f, 1.0f), transmission = std::clamp(p.transmission, 0.0f, 1.0f);
   const float diffuse = (1 - metallic) * (1 - transmission), glass = transmission * (1 - metallic);
+  if (glass > kLeastWeight && isLost3(p)) return;
   if (diffuse > kLeastWeight) {
     Lobe l;
     l.weight = weight * diffuse;

@@ -41,11 +41,12 @@ Framef resolveLobes(const Scene& scene, const Material& m, const ShadedPoint& po
     if (c.result >= 0) return c.value * numberOf(*m.program, slots, c.result);
     return c.texture.texture >= 0 ? c.value * sampleScalar(scene, c.texture, uv) : c.value;
   };
-  const auto normalOf = [&](int result, Vec3f otherwise) {
-    if (result < 0) return otherwise;
-    const Vec3f n = directionOf(scene, *m.program, slots, result);
+  const auto unit = [](Vec3f n, Vec3f otherwise) {
     const float l = length(n);
     return l > 0 ? n / l : otherwise;
+  };
+  const auto normalOf = [&](int result, Vec3f otherwise) {
+    return result < 0 ? otherwise : unit(directionOf(scene, *m.program, slots, result), otherwise);
   };
   const auto frameAround = [&](Vec3f n, bool anisotropic, float rotation, int along = -1) {
     if (!anisotropic) return Framef::around(n);
@@ -84,7 +85,7 @@ Framef resolveLobes(const Scene& scene, const Material& m, const ShadedPoint& po
     for (size_t i = 0; i < c.scalars.size(); ++i) v.scalars[i] = scalar(c.scalars[i]);
     const bool twoAlphas = c.type == ClosureType::kWard || c.type == ClosureType::kGlossy;
     const bool anisotropic = twoAlphas                             ? v.scalars[0] != v.scalars[1]
-                             : c.type == ClosureType::kPrincipled3 ? v.scalars[principled3::kAnisotropic] > 0
+                             : c.type == ClosureType::kPrincipled3 ? v.scalars[principled3::kAnisotropic] != 0
                              : c.type == ClosureType::kPrincipled  ? v.scalars[principled::kAnisotropic] > 0
                                                                    : false;
     const auto frameOf = [&](Vec3f normal) {
@@ -97,7 +98,11 @@ Framef resolveLobes(const Scene& scene, const Material& m, const ShadedPoint& po
       if (isCurve(point.shape) || (c.version >= 4 && c.type == ClosureType::kSheen)) return normal;
       return surface::visiblyReflecting(c.version, point.geometric, point.wo, normal);
     };
-    const Vec3f told = normalOf(c.normal, own), n = reflecting(told);
+    const Vec3f told = normalOf(c.normal, own);
+    // 3.4 asks a normal of the length that it has
+    const Vec3f n = c.version > 3 || c.normal < 0
+                        ? reflecting(told)
+                        : unit(reflecting(directionOf(scene, *m.program, slots, c.normal)), own);
     std::array<uint8_t, 3> at{};
     at[kBaseFrame] =
         anisotropic ? surface.addFrame(frameAround(n, true, scalar(c.rotation), c.tangent), n == own ? 0 : c.version)

@@ -4,7 +4,7 @@
 import random
 
 import numpy as np
-from stage import add, ball, camera, face_on, image, lamp, material, mesh, scene, sheet, sky
+from stage import add, ball, camera, face_on, image, lamp, material, mesh, scene, sheet, sky, sun
 from wardmis import compat
 
 COLUMNS, ROWS = 4, 3
@@ -286,6 +286,16 @@ def gloss():
 
 
 @balls(bounces=2, samples=32)
+def gloss_rough_along_one_axis():
+    """By both axes together so smooth that 3.4 takes one mirror's direction, of facets that are rough along one."""
+    return [
+        *(glossy(d, 0.017, a) for d in ("GGX", "BECKMANN") for a in (0.99, -0.99)),
+        glossy("MULTI_GGX", 0.03, 0.99),
+        glossy("GGX", 0.1, 0.99),
+    ]
+
+
+@balls(bounces=2, samples=32)
 def brighter_than_white():
     """Colours above 1: what is reflected more than once takes them as they are (since 4.0), a metal of the Principled shader is white at most."""
     bright = rgba(0.5, 1.7, 1)
@@ -482,6 +492,67 @@ def principled_base():
         named(emission=rgba(0.2, 0.4, 0.8), Emission_Strength=0.8),
         named(IOR=1.8, Roughness=0.3),
     ]
+
+
+def beyond(**inputs):
+    """With these as links, which sliders do not limit; the others, whose names begin with a capital, as ever."""
+
+    def build(tree):
+        own = {name: value for name, value in inputs.items() if not isinstance(value, list)}
+        socket = named(**own)(tree)
+        for name in inputs.keys() - own.keys():
+            (value,) = inputs[name]
+            number = tree.nodes.new("ShaderNodeValue")
+            number.outputs[0].default_value = value
+            input_name = (NAMES[name][0 if OLD else 1] if name in NAMES else name).replace("_", " ")
+            tree.links.new(number.outputs[0], socket.node.inputs[input_name])
+        return socket
+
+    return build
+
+
+@balls(bounces=BOUNCES, samples=32)
+def principled_beyond_its_sliders():
+    return [
+        beyond(Metallic=1, Roughness=0.5, Anisotropic=[-0.5]),
+        beyond(Metallic=1, Roughness=0.5, Anisotropic=[1.2]),
+        beyond(transmission=0.5, Roughness=0.5, IOR=[-0.5]),
+        beyond(transmission=[1.5], Roughness=0.3),
+        beyond(Metallic=[1.5], Roughness=[-0.4]),
+        beyond(Metallic=[-0.5], Roughness=[1.4]),
+        beyond(level=[2.0], coat=[1.5], Roughness=0.6),
+        beyond(level=[-1.0], coat=[-0.5], sheen=[-0.5]),
+        beyond(Alpha=[1.5], sheen=[2.0]),
+        beyond(Alpha=[-0.5]),
+        beyond(coat=1, coat_roughness=[-0.4]),
+        beyond(coat=1, coat_roughness=[1.5]),
+    ]
+
+
+@scene(bounces=2, block=8, samples=64)
+def normals_of_other_lengths():
+    """Of constants, up in the world; those of 3.4 count as long as they are."""
+
+    def up(kind, length, **inputs):
+        def build(tree):
+            normal = add(tree, "CombineXYZ", Z=length).outputs[0]
+            return add(tree, kind, Normal=normal, **inputs).outputs[0]
+
+        return build
+
+    def daylight():
+        structured_light()
+        sun((1, 0.9, 0.8), 4.0, angle=0.3)
+
+    on_balls(
+        up("BsdfDiffuse", 0.5),
+        up("BsdfDiffuse", 1.0),
+        up(GLOSSY, 0.5, Roughness=0.4),
+        up("BsdfTranslucent", 0.5),
+        up("BsdfGlass", 0.5, Roughness=0.4),
+        up("BsdfDiffuse", 0.0),
+        surroundings=daylight,
+    )
 
 
 GLOWS = {"emission": rgba(0.2, 0.4, 0.8), "Emission_Strength": 0.8}

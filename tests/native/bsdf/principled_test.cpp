@@ -123,6 +123,39 @@ TEST(Principled3, SubsurfaceIsDiffuseOfItsColor) {
 }
 
 // Whatever the inputs: lobes are finite, not negative, and at most ten.
+// Facets that are rough along one axis, of which 3.4 says that both together are smooth, send light along it.
+TEST(Principled3, OfOneAxisIsNoMirror) {
+  Principled3 p;
+  p.metallic = 1, p.anisotropic = 1.2f;
+  for (const bool multiscatter : {false, true}) {
+    p.multiscatter = multiscatter;
+    const std::vector<Lobe> lobes = lobesOf(p, 0.7f);
+    ASSERT_EQ(lobes.size(), 1u);
+    EXPECT_EQ(lobes[0].kind, LobeKind::kGgx);
+    EXPECT_EQ(lobes[0].ax, 1);
+    EXPECT_EQ(lobes[0].ay, 1e-4f);
+    const Vec wo{0.6, 0, 0.8}, wi{-0.8, 0, 0.6};
+    const LobeValue<double> v = evaluate(lobes[0], wi, wo);
+    const double f = reflectance(lobes[0], 0.5 * length(wi + wo)).x;
+    if (!multiscatter) EXPECT_NEAR(v.fCos.x / (v.pdf * f), 1, 1e-6);
+  }
+  p.roughness = 0.1f, p.anisotropic = 0;
+  EXPECT_FALSE(has(lobesOf(p, 0.7f), LobeKind::kMirror));
+  p.roughness = 0.01f;
+  EXPECT_TRUE(has(lobesOf(p, 0.7f), LobeKind::kMirror));
+}
+
+// Of an index at which Cycles 3.4 divides 0 by 0.
+TEST(Principled3, OfGlassWithoutAnIndexIsBlack) {
+  Principled3 p;
+  p.transmission = 0.5f, p.ior = -1;
+  EXPECT_TRUE(lobesOf(p, 0.7f).empty());
+  p.backfacing = true;
+  EXPECT_FALSE(lobesOf(p, 0.7f).empty());
+  p.backfacing = false, p.ior = 0.01f;
+  EXPECT_FALSE(lobesOf(p, 0.7f).empty());
+}
+
 TEST(Principled, AnyInputsMakeLobes) {
   Random random(4);
   const auto v = [&](float high) {

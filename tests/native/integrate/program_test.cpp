@@ -156,6 +156,11 @@ TEST(ProgramRender, NormalsTurnTheSurface) {
   diffuse.colors = {{{1, 1, 1}, {}}}, diffuse.scalars = {{0, {}}}, diffuse.normal = 0;
   scene.materials[0].closures = {diffuse};
   EXPECT_NEAR(measure(renderScene(scene, settings(4))).mean, 0.8, 1e-5);
+  // one of another length is the same, but to 3.4, which finds that it reflects the view into the surface, and turns it
+  setProgram(scene.materials[0], {{{"op", "vector-add"}, {"in", {{0.3, -0.4, 0}, {0, 0, 0}}}}}, {0});
+  EXPECT_NEAR(measure(renderScene(scene, settings(4))).mean, 0.8, 1e-5);
+  scene.materials[0].closures[0].version = 3;
+  EXPECT_NEAR(measure(renderScene(scene, settings(4))).mean, std::sqrt(0.5 * 1.01), 1e-4);
 }
 
 // A bent normal is that of every closure that has none of its own, and of what is computed after it, in both forms.
