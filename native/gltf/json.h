@@ -64,6 +64,7 @@ class Json {
   bool isNull() const { return element_.is_null(); }
   bool isObject() const { return element_.is_object(); }
   bool isArray() const { return element_.is_array(); }
+  bool isNumber() const { return element_.is_number(); }
   std::string_view string() const;
   bool boolean() const;
   float number(float low = -FLT_MAX, float high = FLT_MAX) const;

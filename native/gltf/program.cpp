@@ -116,6 +116,9 @@ ProgramReader::Argument ProgramReader::argument(const Json& json, ValueKind kind
                               j, source.name),
                   kExportAgain);
     out.value = static_cast<int>(j);
+  } else if (kind == ValueKind::kVector ? !json.isArray() : !json.isNumber()) {
+    const char* constant = kind == ValueKind::kVector ? "a vector, [x, y, z]" : "a number";
+    json.failExpected(fmt::format("{}, or the value of an earlier operation, {{\"result\": its index}}", constant));
   } else if (kind == ValueKind::kNumber) {
     out.literal[0] = json.number();
   } else {

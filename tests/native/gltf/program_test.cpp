@@ -34,8 +34,16 @@ TEST(Programs, AreRefusedByPlaceAndName) {
       {"operations[1] 'nose' .op: there is no operation \"nose\"", after({{"op", "nose"}})},
       {"operations[1]: 'op' is missing", after(json::object())},
       {"operations[1] 'mix': expected 3 arguments, found 1", after({{"op", "mix"}, {"in", {1}}})},
-      {"operations[1] 'mix' .in[1]: expected 3 numbers, found 2", after({{"op", "mix"}, {"in", {1, 2, 3}}})},
-      {"operations[1] 'add' .in[0]: expected a number, found [1, 2, 3]",
+      {"operations[1] 'mix' .in[1]: expected a vector, [x, y, z], or the value of an earlier operation, {\"result\": "
+       "its "
+       "index}, found 99",
+       after({{"op", "mix"}, {"in", {1, 99, 3}}})},
+      {"operations[1] 'mix' .in[0]: expected a number, or the value of an earlier operation, {\"result\": its index}, "
+       "found \"a\"",
+       after({{"op", "mix"}, {"in", {"a", {1, 2, 3}, {1, 2, 3}}}})},
+      {"operations[1] 'mix' .in[2]: expected 3 numbers, found [1]",
+       after({{"op", "mix"}, {"in", {1, {1, 2, 3}, {1}}}})},
+      {"operations[1] 'add' .in[0]: expected a number, or the value of an earlier operation",
        after({{"op", "add"}, {"in", {{1, 2, 3}, 2}}})},
       {"operations[1] 'add' .in[1].result: expected a number, found a vector: value 0 is of operation 'position'",
        after({{"op", "add"}, {"in", {1, {{"result", 0}}}}})},
