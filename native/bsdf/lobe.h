@@ -112,6 +112,15 @@ constexpr bool isMatte(LobeKind k) {
   return k <= LobeKind::kRoughTranslucent || (k >= LobeKind::kVelvet && k <= LobeKind::kFibres);
 }
 
+// Whether the rounding of float directions would show, so that the renderer draws and evaluates it in double.
+inline bool needsDouble(const Lobe& l, float cosThetaO) {
+  const LobeKind k = l.kind;
+  const bool smooth = k <= LobeKind::kRoughTranslucent || k == LobeKind::kVelvet || k == LobeKind::kSchlickSheen;
+  if (isDelta(k) || smooth || k == LobeKind::kPhong || k == LobeKind::kFibres) return false;
+  const float narrow = std::min(l.ax, l.ay), wide = std::max(l.ax, l.ay);
+  return narrow * std::min(narrow, cosThetaO) < 4e-6f * (1 + wide * wide);
+}
+
 // What techniques are called by.
 enum class LobeClass : uint8_t { kGlossy, kGlass, kRefraction, kTranslucent, kSheen, kDiffuse };
 inline constexpr size_t kLobeClasses = 6;

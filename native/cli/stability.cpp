@@ -12,6 +12,7 @@
 #include "cli/verbs.h"
 #include "math/error.h"
 #include "study/gnuplot.h"
+#include "study/stability_lobes.h"
 
 namespace wardmis {
 
@@ -32,12 +33,17 @@ int run(Options& o) {
   if (o.settings.variants.size() < o.variants.size())
     throw Error(ExitCode::kUsage, "--variants names one twice", "name each variant once");
   const StabilityReport report = runStability(stabilityGrid(o.settings), o.settings);
+  const auto lobes = runLobeStability({o.settings.thorough, o.settings.seed, o.settings.threads});
+  const bool pass = report.pass() && std::ranges::all_of(lobes, &LobeStability::pass);
   if (!o.plot.empty()) plotStability(report, o.plot);
-  if (o.json)
-    fmt::print("{}\n", stabilityJson(report).dump(2));
-  else
-    fmt::print("{}", stabilityTable(report));
-  return static_cast<int>(report.pass() ? ExitCode::kDone : ExitCode::kCheckFailed);
+  if (o.json) {
+    nlohmann::json all = stabilityJson(report);
+    all["lobes"] = lobeStabilityJson(lobes), all["pass"] = pass;
+    fmt::print("{}\n", all.dump(2));
+  } else {
+    fmt::print("{}\n{}", stabilityTable(report), lobeStabilityTable(lobes));
+  }
+  return static_cast<int>(pass ? ExitCode::kDone : ExitCode::kCheckFailed);
 }
 
 }  // namespace

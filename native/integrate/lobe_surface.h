@@ -196,11 +196,8 @@ class LobeSurface {
   }
   // Whether the rounding of float directions would show, as Surface has it.
   bool needsDouble(float cosThetaO) const {
-    return std::any_of(lobe_.begin(), lobe_.begin() + count_, [&](const Lobe& l) {
-      if (isDelta(l.kind) || byCosine(l) || l.kind == LobeKind::kPhong || l.kind == LobeKind::kFibres) return false;
-      const float narrow = std::min(l.ax, l.ay), wide = std::max(l.ax, l.ay);
-      return narrow * std::min(narrow, cosThetaO) < 4e-6f * (1 + wide * wide);
-    });
+    return std::any_of(lobe_.begin(), lobe_.begin() + count_,
+                       [&](const Lobe& l) { return wardmis::needsDouble(l, cosThetaO); });
   }
 
   // f cos of each technique's lobes and their densities at a direction wi, both in frame 0; ahead: it leaves on the

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "study/slope_disk.h"
+#include "study/stability_lobes.h"
 
 namespace wardmis {
 namespace {
@@ -55,6 +56,32 @@ TEST(Stability, TinyGridPasses) {
   EXPECT_GT(report.chiSquareTests, 13);
   EXPECT_GT(report.biasTests, 100);
   EXPECT_NE(stabilityTable(report).find("PASS: 18 of 18 cells"), std::string::npos) << stabilityTable(report);
+}
+
+TEST(Stability, AllLobesPass) {
+  const std::vector<LobeStability> all = runLobeStability({});
+  ASSERT_EQ(all.size(), static_cast<size_t>(kLobeKinds));
+  for (const LobeStability& l : all) {
+    EXPECT_TRUE(l.pass()) << lobeStabilityTable(all);
+    EXPECT_EQ(l.compared > 1000, !isDelta(l.kind)) << name(l.kind);
+  }
+  EXPECT_NE(lobeStabilityTable(all).find("PASS: 24 of 24 lobes"), std::string::npos);
+  EXPECT_EQ(lobeStabilityJson(all), lobeStabilityJson(runLobeStability({.threads = 1})));
+}
+
+// Of one kind of lobe, and no other: a number that is none, one that is negative, an error in float.
+TEST(Stability, FindsDefectsOfAnyLobe) {
+  using Defect = std::function<void(LobeValue<float>&)>;
+  for (const Defect& defect :
+       {Defect([](auto& v) { v.pdf = v.pdf > 2 ? NAN : v.pdf; }), Defect([](auto& v) { v.fCos.y = -v.fCos.y; }),
+        Defect([](auto& v) { v.pdf *= 1.01f; })}) {
+    const auto all = runLobeStability({}, [&](const Lobe& l, Vec3f wi, Vec3f wo) {
+      LobeValue<float> v = evaluate(l, wi, wo);
+      if (l.kind == LobeKind::kGgxGlass) defect(v);
+      return v;
+    });
+    for (const LobeStability& l : all) EXPECT_EQ(l.pass(), l.kind != LobeKind::kGgxGlass) << name(l.kind);
+  }
 }
 
 TEST(Stability, ResultsDoNotDependOnThreads) {
