@@ -17,6 +17,7 @@ constexpr bool hasSoftTerminator(LobeKind kind) {
 
 struct BumpShadow {
   float bySurface, byLight;  // what is left of light that a sample of the lobe finds, or one of a light
+  bool refused = false;      // since 5: there is nothing of the lobe there, nor of its density, but for its own samples
 };
 
 // Cosines: of the surface's own normal and the light, of both normals, of the lobe's normal and the light. What goes
@@ -27,7 +28,11 @@ inline BumpShadow bumpShadow(int version, LobeKind kind, float ownLight, float o
     return {bumpShadow(version, LobeKind::kLambert, ownLight, ownLobe, lobeLight).bySurface, 1};
   const auto both = [&](float left) { return BumpShadow{lobeLight > 0 ? left : 1, left}; };
   if (version >= 5) {
-    if (ownLight * ownLobe * lobeLight < 0) return soft ? both(0) : BumpShadow{1, 0};
+    if (ownLight * ownLobe * lobeLight < 0) {
+      BumpShadow none = soft ? both(0) : BumpShadow{1, 0};
+      none.refused = true;
+      return none;
+    }
     const float light = std::abs(ownLight), turned = std::abs(ownLobe);
     if (!soft || light >= 1 || turned >= 1) return {1, 1};
     if (light < 1e-6f) return both(0);

@@ -383,7 +383,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
         if (t == kLight)
           add(t, kByLight, ahead, otherwise ? lit.same : f, radiance * byLight, p, visibility, set);
         else
-          add(t, kBySurface, ahead, f, radiance * (1 - byLight), p, visibility, set);
+          add(t, kBySurface, ahead, lit.bySurface(f, p[kLight], s.strength()), radiance, p, visibility, set);
       } else {
         add(t, kAny, ahead, lit.blended(f, p[kLight], s.strength()), radiance, p, visibility, set);
       }

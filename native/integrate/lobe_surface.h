@@ -43,8 +43,15 @@ struct LitOtherwise {
   // Of light along a direction that both find, what belongs to each integrand; f: of surface samples, all of it.
   std::array<Rgb, K - 1> blended(const std::array<Rgb, K - 1>& f, float light, float strength) const {
     const float byLight = share(density, light, strength);
+    std::array<Rgb, K - 1> sum = bySurface(f, light, strength);
+    for (size_t i = 0; i < sum.size(); ++i) sum[i] += same[i] * byLight;
+    return sum;
+  }
+  // The part of it that is surface samples'.
+  std::array<Rgb, K - 1> bySurface(const std::array<Rgb, K - 1>& f, float light, float strength) const {
+    const float byLight = share(density, light, strength);
     std::array<Rgb, K - 1> sum;
-    for (size_t i = 0; i < sum.size(); ++i) sum[i] = f[i] * (1 - byLight) + same[i] * byLight;
+    for (size_t i = 0; i < sum.size(); ++i) sum[i] = f[i] * (1 - byLight);
     for (int k = 0; k < strays; ++k)
       sum[stray[k].slot] += stray[k].f * (byLight - share(stray[k].density, light, strength));
     return sum;
@@ -242,6 +249,16 @@ class LobeSurface {
                                                     : bumpShadow(bump_[l.frame], l.kind, static_cast<float>(wi.z),
                                                                  ownCosine_[l.frame], static_cast<float>(w.z));
       const bool sampled = seen && above == ahead;
+      if (shadow.refused && lit.strays < lit.kMostStrays) {
+        // to light samples and to those of other lobes it is not there, nor is its density; its own bring theirs
+        lit.any = true;
+        if (!sampled) continue;
+        if (slot_[i] != kCosine) p[slot_[i]] += share_[i] * static_cast<float>(v.pdf);
+        if (!(density > std::numeric_limits<float>::min())) continue;
+        own[lit.strays] = {value * shadow.bySurface, density, density, -1};
+        lit.stray[lit.strays++].slot = slot_[i];
+        continue;
+      }
       if (sampled) {
         f[slot_[i]] += value * shadow.bySurface;
         if (slot_[i] != kCosine) p[slot_[i]] += share_[i] * static_cast<float>(v.pdf);

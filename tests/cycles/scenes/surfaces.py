@@ -555,6 +555,17 @@ def normals_of_other_lengths():
     )
 
 
+@scene(bounces=2, within=0.005, block=8, samples=64)
+def principled_of_an_upright_normal():
+    """Both its diffuse and its glossy part see light that is below the surface; since 5.0 it is neither's, but for its own samples."""
+    sky((0.4, 0.45, 0.5))
+    of, tree, output = material()
+    up = add(tree, "CombineXYZ", Z=1.0).outputs[0]
+    tree.links.new(named(Roughness=0.4, Normal=up)(tree), output.inputs["Surface"])
+    ball(of)
+    camera()
+
+
 GLOWS = {"emission": rgba(0.2, 0.4, 0.8), "Emission_Strength": 0.8}
 
 
