@@ -18,7 +18,6 @@ struct Pixel {
   float depth = 1e10f;  // planar, of the first sample
   Vec3f normal{0, 0, 0};
   Rgb albedo{0, 0, 0};
-  uint32_t visits = 0;  // first hits on the pixel's own surface
 
   void add(Rgb v) {
     const float c[3] = {v.x, v.y, v.z};
@@ -26,18 +25,6 @@ struct Pixel {
       sum[i] += double(c[i]);
       squares[i] += double(c[i]) * double(c[i]);
     }
-  }
-};
-
-// A face of an object, as far as one allocation and one sequence of points can serve all of it.
-struct PixelSurface {
-  Vec3f normal{0, 0, 0};
-  int material = -1;  // none: no surface
-  uint32_t placement = ~0u;
-
-  bool holds(const PixelSurface& b) const {
-    constexpr float kSameFace = 0.9f;  // cos of the largest turn of the normal
-    return material == b.material && placement == b.placement && dot(normal, b.normal) >= kSameFace;
   }
 };
 
@@ -74,8 +61,6 @@ struct FilmBuffer {
   std::vector<Pixel> pixels;
   size_t techniques = 0;               // that the renderer counts
   std::vector<uint32_t> sampleCounts;  // [pixel * techniques + technique]: samples that it took at first hits
-  std::vector<PixelSurface> own;       // of each pixel: that of its first hit
-  std::vector<uint32_t> elsewhere;     // of the samples, those on other surfaces than the pixel's own
   std::vector<DataPixel> data;         // of each pixel; empty where no pass wants it
   std::vector<LightPixel> light;       // likewise
   std::vector<CatcherPixel> catchers;  // of each pixel; empty where there are none
@@ -88,9 +73,7 @@ struct FilmBuffer {
         height(h),
         pixels(static_cast<size_t>(w) * static_cast<size_t>(h)),
         techniques(techniqueCount),
-        sampleCounts(pixels.size() * techniqueCount),
-        own(pixels.size()),
-        elsewhere(sampleCounts.size()) {}
+        sampleCounts(pixels.size() * techniqueCount) {}
   Pixel& at(int x, int y) {
     return pixels[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)];
   }

@@ -91,10 +91,7 @@ struct HitPlan {
   Integrand integrand = Integrand::kSplit;
   Weights weights = Weights::kBalance;
   uint32_t pixelKey = 0, vertex = 0;
-  uint32_t index = 0;  // of this visit, among the pixel's
-  // Index of each technique's first point here: consecutive over the visits of the pixel's own surface, and over those
-  // of others, however many a visit takes, so that the sampler's points stay evenly spread under every allocation.
-  std::array<uint32_t, K> firstPoint{};
+  uint32_t index = 0;  // of this visit, by the camera sample: nothing depends on what others met
 };
 
 // A ray of a surface technique that hit something: the path may go on from there.
@@ -163,15 +160,14 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
   const Vec3f woFloat = x.frame.toLocal(x.wo);
   const bool split = plan.integrand == Integrand::kSplit;
   const uint32_t dimension = plan.vertex * Dimensions<K>::kPerVertex;
+  const Sampler::Visit visit(sampler, plan.pixelKey, dimension, plan.index);
+  const auto technique = [&](size_t t) { return dimension + Dimensions<K>::kTechnique + static_cast<uint32_t>(t); };
   const std::array<int, K> n =
-      systematicCounts<K>(plan.fractions, plan.samples,
-                          sampler.spread1D(plan.pixelKey, dimension + Dimensions<K>::kSampleCounts, plan.index));
-  const auto indexOf = [&](size_t t, int m) { return plan.firstPoint[t] + static_cast<uint32_t>(m); };
+      systematicCounts<K>(plan.fractions, plan.samples, visit.counts(dimension + Dimensions<K>::kSampleCounts));
   Scratch<LightChoice, kMaxSamplesPerHit> lights;  // first of all, see Emitters::choose()
   for (int m = 0; m < n[kLight]; ++m)
     lights.make(m, [&] {
-      return world.emitters.choose(sampler.getChoice(
-          plan.pixelKey, dimension + Dimensions<K>::kTechnique + uint32_t{kLight}, indexOf(kLight, m)));
+      return world.emitters.choose(visit.point<ChoicePoint>(technique(kLight), static_cast<uint32_t>(m)));
     });
 
   const Mixture<K> mixture(plan.fractions, plan.samples, plan.weights);
@@ -187,15 +183,9 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
   Scratch<LightSample, kMaxSamplesPerHit> light;
   using LobeSample = typename LobeSurface<K>::Sample;
   Scratch<LobeSample, kGeneral ? kMaxSamplesPerHit : 1> from;  // of which lobe
-  const auto point = [&](size_t t, int m) {
-    return sampler.get2D(plan.pixelKey, dimension + Dimensions<K>::kTechnique + static_cast<uint32_t>(t),
-                         indexOf(t, m));
-  };
+  const auto point = [&](size_t t, int m) { return visit.point<Vec2f>(technique(t), static_cast<uint32_t>(m)); };
   // what a lobe's sample chooses by, apart from its point: its dimension is the complement of that of the point
-  const auto choice = [&](size_t t, int m) {
-    return sampler.get1D(plan.pixelKey, ~(dimension + Dimensions<K>::kTechnique + static_cast<uint32_t>(t)),
-                         indexOf(t, m));
-  };
+  const auto choice = [&](size_t t, int m) { return visit.choice(~technique(t), static_cast<uint32_t>(m)); };
   std::array<int, K> end{};  // of each technique's samples in the batch
   int j = 0;
   for (size_t l = 0; l < kLobes; ++l) {

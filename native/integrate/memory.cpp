@@ -20,7 +20,7 @@ constexpr uint64_t kData = sizeof(DataPixel) + 14 * sizeof(float), kLight = size
 
 template <size_t K>
 uint64_t bytesPerPixelWith(const RenderSettings& s, bool catchers) {
-  constexpr uint64_t kFilm = sizeof(Pixel) + 2 * K * sizeof(uint32_t) + sizeof(PixelSurface);
+  constexpr uint64_t kFilm = sizeof(Pixel) + K * sizeof(uint32_t);
   const uint64_t kept = kFilm + (catchers ? sizeof(CatcherPixel) : 0);
   const uint64_t written = kept + kWritten<K> + (s.data ? kData : 0) + (s.light ? kLight : 0);
   if (s.allocation == Allocation::kAuto)  // its pilot is over before there is a film

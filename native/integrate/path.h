@@ -70,7 +70,6 @@ Rgb followPath(const RenderScene& scene, const Sampler& sampler, uint32_t pixelK
     plan.pixelKey = pixelKey;
     plan.vertex = static_cast<uint32_t>(vertex);
     plan.index = index;
-    plan.firstPoint.fill(index);  // at most one of each
     Continuations<K> more;
     sum += weight * estimate<N, K>(scene, sampler, x, plan, counts, nullptr, more);
     if (more.count == 0) break;

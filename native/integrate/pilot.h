@@ -8,6 +8,18 @@
 
 namespace wardmis {
 
+// A face of an object, as far as one allocation can serve all of it.
+struct PixelSurface {
+  Vec3f normal{0, 0, 0};
+  int material = -1;  // none: no surface
+  uint32_t placement = ~0u;
+
+  bool holds(const PixelSurface& b) const {
+    constexpr float kSameFace = 0.9f;  // cos of the largest turn of the normal
+    return material == b.material && placement == b.placement && dot(normal, b.normal) >= kSameFace;
+  }
+};
+
 // surface: that of the pixel's first hit. Hits of other ones, beyond an edge, have no part in the moments: they would
 // set the counts of a whole neighbourhood by a light that it does not get.
 struct PilotPixel {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <bit>
-#include <numeric>
 #include <optional>
 
 #include "integrate/kernel.h"
@@ -24,8 +23,6 @@ template <class X>
   data.materialIndex = world.scene.materials[static_cast<size_t>(x.material)].index;
 }
 
-inline constexpr uint32_t kElsewhere = 0x656c7365u;  // sets apart a pixel's points on other surfaces than its own
-
 // Of a sample whose camera ray meets a shadow catcher first.
 struct CatcherSample {
   bool caught = false;
@@ -34,13 +31,13 @@ struct CatcherSample {
   Rgb sky{0, 0, 0};      // behind it, or where there is nothing
 };
 
-// Radiance along one camera ray of a world. data, light, catcher: null where they are not wanted. taken: the pixel's
-// samples of each technique so far; elsewhere: of these, on other surfaces than its own.
+// Radiance along one camera ray of a world. data, light, catcher: null where they are not wanted. taken: counts the
+// pixel's samples of each technique; may be null, too.
 template <uint32_t N, size_t K>
 Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& camera, uint32_t pixelKey,
                  uint32_t sample, const PixelFractions<K>* allocated, Pixel& pixel, DataPixel* data, LightPixel* light,
-                 CatcherSample* catcher, uint32_t* taken, uint32_t* elsewhere, PixelSurface& own, PilotPixel* pilot,
-                 HitMoments<K>* moments, CandidateSums<K>* candidates, Counts& counts) {
+                 CatcherSample* catcher, uint32_t* taken, PilotPixel* pilot, HitMoments<K>* moments,
+                 CandidateSums<K>* candidates, Counts& counts) {
   ++counts.cameraRays;
   const bool transparent = world.scene.film.transparent;
   const float exposure = world.scene.film.exposure;
@@ -110,13 +107,8 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
   const bool follows = told == nullptr || told->holds(surface);
   const Fractions<K>& shares =
       allocated != nullptr && follows && covers<K>(allocated->fractions, mask) ? allocated->fractions : in.fractions;
-  // Each of a pixel's surfaces has points of its own: of one sequence they would take what the others leave of it.
-  if (own.material < 0) own = surface;
-  const bool atOwn = own.holds(surface);
-  plan.index =
-      atOwn ? pixel.visits++ : std::accumulate(elsewhere, elsewhere + K, 0u) / static_cast<uint32_t>(in.samplesPerHit);
-  plan.pixelKey = atOwn ? pixelKey : combine(pixelKey, kElsewhere);
-  for (size_t i = 0; i < K; ++i) plan.firstPoint[i] = atOwn ? taken[i] - elsewhere[i] : elsewhere[i];
+  plan.index = sample;
+  plan.pixelKey = pixelKey;
   plan.available = mask;
   if (candidates != nullptr) {  // the pilot of `auto`: each technique alike
     plan.samples = kSets * std::popcount(mask);
@@ -145,11 +137,8 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
   sum += estimate<N, K>(world, in.sampler, x, plan, counts, record ? &*record : nullptr, more) * seenThrough;
   if (split != nullptr) [[unlikely]]
     addLight(light->direct, split->direct, seenThrough * exposure);
-  for (size_t i = 0; i < K; ++i) {
-    const auto now = static_cast<uint32_t>(counts.samples[i] - before[i]);
-    taken[i] += now;
-    if (!atOwn) elsewhere[i] += now;
-  }
+  if (taken != nullptr)
+    for (size_t i = 0; i < K; ++i) taken[i] += static_cast<uint32_t>(counts.samples[i] - before[i]);
   if constexpr ((N & kNeedsBounces) != 0) {
     const Fractions<K> n = record ? Mixture<K>(plan.fractions, plan.samples, plan.weights).n : Fractions<K>{};
     for (int k = 0; k < more.count; ++k) {
@@ -213,7 +202,7 @@ void renderTile(const KernelInput<K>& in, const Tile& tile, FilmBuffer& film, Pi
       LightPixel* light = film.light.empty() ? nullptr : &film.light[index];
       PilotPixel* pilotPixel = pilot != nullptr ? &pilot->pixels[index] : nullptr;
       for (uint32_t s = tile.firstSample; s < tile.firstSample + tile.samples; ++s) {
-        const Vec2f offset = in.filter.sample(in.sampler.get2D(key, Dimensions<K>::kFilmPoint, s));
+        const Vec2f offset = in.filter.sample(Sampler::Visit(in.sampler, key, 0, s).film(Dimensions<K>::kFilmPoint));
         const Vec2f lens = in.camera.needsLens() ? in.sampler.get2D(key, Dimensions<K>::kLensPoint, s) : Vec2f{};
         float time = kMiddle;
         if (in.shutter != nullptr) [[unlikely]]
@@ -226,28 +215,24 @@ void renderTile(const KernelInput<K>& in, const Tile& tile, FilmBuffer& film, Pi
           continue;
         }
         uint32_t* const taken = &film.sampleCounts[index * K];
-        uint32_t* const elsewhere = &film.elsewhere[index * K];
         if (film.catchers.empty()) [[likely]] {
           const Rgb value = cameraSample<N, K>(in, in.scene, ray, key, s, allocated, pixel, data, light, nullptr, taken,
-                                               elsewhere, film.own[index], pilotPixel, moments, candidates, counts) *
+                                               pilotPixel, moments, candidates, counts) *
                             exposure;
           if (counts.rare.admit(value, in.least)) pixel.add(value);
           continue;
         }
         // the same points in both worlds, so that where catchers have no shadow the quotient is 1
         Pixel again = pixel;
-        std::array<uint32_t, K> takenAgain, elsewhereAgain;
-        std::copy_n(taken, K, takenAgain.begin()), std::copy_n(elsewhere, K, elsewhereAgain.begin());
         CatcherSample seen;
         const Rgb value = cameraSample<N, K>(in, in.scene, ray, key, s, allocated, pixel, data, light, &seen, taken,
-                                             elsewhere, film.own[index], pilotPixel, moments, candidates, counts) *
+                                             pilotPixel, moments, candidates, counts) *
                           exposure;
         if (!counts.rare.admit(value, in.least)) continue;
         pixel.add(value);
         addCatchers(film.catchers[index], value, exposure, pixel.alpha - again.alpha, seen, [&](CatcherSample& alone) {
-          return cameraSample<N, K>(in, *in.catchers, ray, key, s, allocated, again, nullptr, nullptr, &alone,
-                                    takenAgain.data(), elsewhereAgain.data(), film.own[index], nullptr, nullptr,
-                                    nullptr, counts);
+          return cameraSample<N, K>(in, *in.catchers, ray, key, s, allocated, again, nullptr, nullptr, &alone, nullptr,
+                                    nullptr, nullptr, nullptr, counts);
         });
       }
     }

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "math/sobol.h"
 #include "math/vec.h"
 
 namespace wardmis {
@@ -44,38 +45,6 @@ constexpr double inCell(uint32_t cell, double jitter, uint32_t cells) {
   return std::min((cell + jitter) / cells, 0x1.fffffffffffffp-1);
 }
 
-constexpr uint32_t reverseBits(uint32_t x) {
-#if defined(__clang__)
-  return __builtin_bitreverse32(x);
-#else
-  x = __builtin_bswap32(x);
-  x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
-  x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
-  return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
-#endif
-}
-
-// Owen's nested uniform scramble of a number given with its bits reversed (Laine and Karras 2011, constants of Vegdahl
-// 2021).
-constexpr uint32_t owenScrambleReversed(uint32_t x, uint32_t seed) {
-  x ^= x * 0x3d20adeau;
-  x += seed;
-  x *= (seed >> 16) | 1u;
-  x ^= x * 0x05526c56u;
-  x ^= x * 0x53a22864u;
-  return x;
-}
-
-// Second dimension of Sobol's sequence, bits reversed: the Pascal matrix modulo 2 applied to the index.
-constexpr uint32_t sobol1Reversed(uint32_t i) {
-  i ^= (i >> 1) & 0x55555555u;
-  i ^= (i >> 2) & 0x33333333u;
-  i ^= (i >> 4) & 0x0f0f0f0fu;
-  i ^= (i >> 8) & 0x00ff00ffu;
-  i ^= (i >> 16) & 0x0000ffffu;
-  return i;
-}
-
 // A stream of 53-bit numbers for studies without pixels (Steele, Lea and Flood 2014, "SplitMix"): as many streams as
 // there are keys, so that trials do not depend on threads.
 class Stream {
@@ -101,7 +70,7 @@ class Stream {
 
 enum class SamplerType : uint8_t { kIndependent, kStratified, kSobol };
 
-// Points in the unit square for one pixel. `dimension` names the use (see Dimension in integrate/), `index` counts the
+// Points in the unit square for one pixel. `dimension` names the use (see Dimensions in integrate/), `index` counts the
 // points of that use within the pixel.
 class Sampler {
  public:
@@ -136,9 +105,47 @@ class Sampler {
   // Evenly spread over the indices, whatever the sampler: the scrambled van der Corput sequence.
   static float spread1D(uint32_t pixelKey, uint32_t dimension, uint32_t index) {
     const uint32_t key = combine(pixelKey, dimension);
-    const uint32_t i = reverseBits(owenScrambleReversed(reverseBits(index), key));
-    return toUnit(reverseBits(owenScrambleReversed(i, mix(key ^ 0xa511e9b3u))));
+    return toUnit(reverseBits(owenScrambleReversed(shuffled(key, index), mix(key ^ 0xa511e9b3u))));
   }
+
+  // The numbers of one visit to a surface, and of the film point that led to it. Sobol's are dimensions of one sequence
+  // in one order, each scrambled by itself: where a film point decides which surface is met, and the number for the
+  // counts which technique has a point, the points are still evenly spread over those visits that have them.
+  class Visit {
+   public:
+    // first: the first dimension of the vertex; index: of the visit, within the pixel.
+    Visit(const Sampler& sampler, uint32_t pixelKey, uint32_t first, uint32_t index)
+        : sampler_(sampler), pixelKey_(pixelKey), index_(index) {
+      if (isSobol()) sobol0_ = shuffled(combine(pixelKey, first), index), sobol1_ = sobol1(sobol0_);
+    }
+    // In the pixel.
+    Vec2f film(uint32_t dimension) const {
+      if (!isSobol()) return sampler_.get2D(pixelKey_, dimension, index_);
+      return scrambled<Vec2f>(combine(pixelKey_, dimension), index_, kSobol3(sobol0_), kSobol4(sobol0_));
+    }
+    // By which the samples are shared out.
+    float counts(uint32_t dimension) const {
+      if (!isSobol()) return spread1D(pixelKey_, dimension, index_);
+      return toUnit(reverseBits(owenScrambleReversed(kSobol2(sobol0_), combine(pixelKey_, dimension))));
+    }
+    // The m-th point of a technique. Sobol's come in pairs of mirror images, before they are scrambled: along each axis
+    // the one lies in the gaps that the other, of all visits, leaves.
+    template <class Point>
+    Point point(uint32_t dimension, uint32_t m) const {
+      if (!isSobol()) return sampler_.get<Point>(keyOf(m), dimension, index_);
+      const uint32_t mirror = (m & 1u) != 0 ? ~0u : 0;
+      return scrambled<Point>(combine(keyOf(m >> 1), dimension), index_, sobol0_ ^ mirror, sobol1_ ^ mirror);
+    }
+    // And a number for a choice beside it.
+    float choice(uint32_t dimension, uint32_t m) const { return sampler_.get1D(keyOf(m), dimension, index_); }
+
+   private:
+    bool isSobol() const { return sampler_.type_ == SamplerType::kSobol; }
+    uint32_t keyOf(uint32_t m) const { return m == 0 ? pixelKey_ : combine(pixelKey_, ~m); }
+
+    const Sampler& sampler_;
+    uint32_t pixelKey_, index_, sobol0_ = 0, sobol1_ = 0;
+  };
 
   // A random permutation of 0..n-1, evaluated at i (Kensler 2013, "Correlated multi-jittered sampling", listing 3;
   // there i + p may pass 2^32, and then two images coincide).
@@ -173,24 +180,34 @@ class Sampler {
   }
 
  private:
+  // The index's place in an order of its own for each key; blocks of 2^k stay blocks.
+  static uint32_t shuffled(uint32_t key, uint32_t index) {
+    return reverseBits(owenScrambleReversed(reverseBits(index), key));
+  }
+  // Bits to the first coordinate; a double has bits of its own below these 32.
+  template <class Point>
+  static auto first(uint32_t key, uint32_t index, uint32_t bits) -> decltype(Point::x) {
+    if constexpr (sizeof(Point::x) == sizeof(double))
+      return toUnit(bits, combine(mix(key + 0x7feb352du), index));
+    else
+      return toUnit(bits);
+  }
+  // The point of two dimensions, their bits reversed.
+  template <class Point>
+  static Point scrambled(uint32_t key, uint32_t index, uint32_t x, uint32_t y) {
+    return {first<Point>(key, index, reverseBits(owenScrambleReversed(x, mix(key ^ 0xa511e9b3u)))),
+            toUnit(reverseBits(owenScrambleReversed(y, mix(key ^ 0x63d83595u))))};
+  }
+
   template <class Point>
   Point get(uint32_t pixelKey, uint32_t dimension, uint32_t index) const {
-    using X = decltype(Point::x);
     const uint32_t key = combine(pixelKey, dimension);
-    const auto x = [&](uint32_t bits) -> X {
-      if constexpr (sizeof(X) == sizeof(double))
-        return toUnit(bits, combine(mix(key + 0x7feb352du), index));  // bits of their own below the sequence's 32
-      else
-        return toUnit(bits);
-    };
-    if (type_ == SamplerType::kSobol) {
-      // Burley 2020: shuffle the order, then scramble each coordinate of the (0,2)-sequence
-      const uint32_t i = reverseBits(owenScrambleReversed(reverseBits(index), key));
-      return {x(reverseBits(owenScrambleReversed(i, mix(key ^ 0xa511e9b3u)))),
-              toUnit(reverseBits(owenScrambleReversed(sobol1Reversed(i), mix(key ^ 0x63d83595u))))};
+    if (type_ == SamplerType::kSobol) {  // Burley 2020: shuffle the order, then scramble each coordinate
+      const uint32_t i = shuffled(key, index);
+      return scrambled<Point>(key, index, i, sobol1(i));
     }
     const uint32_t h = combine(key, index);
-    const Point jitter{x(h), toUnit(mix(h ^ 0x68bc21ebu))};
+    const Point jitter{first<Point>(key, index, h), toUnit(mix(h ^ 0x68bc21ebu))};
     if (type_ == SamplerType::kIndependent) return jitter;
     // jittered cells in random order; a new order for each block
     const uint32_t cells = columns_ * rows_;

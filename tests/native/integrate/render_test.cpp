@@ -288,9 +288,9 @@ TEST(Render, CountsThemselvesAreNoNoise) {
   expectOfAuto(block(ward({0.8f, 0.8f, 0.8f}, {0.04f, 0.04f, 0.04f}, 0.3f, WardVariant::kWardGmd)), s, 1.1);
 }
 
-// Pixels on the edges of a block see two of its faces. Of one sequence of points each took what the other left of it,
-// which is not even, and less so where the faces' shares differ: the ratio was 5.0, now 1.0. Fixed seeds.
-TEST(Render, SurfacesOfAPixelHavePointsOfTheirOwn) {
+// Pixels on the edges of a block see two of its faces, whose shares differ. Of a sequence that does not know of the film
+// each face takes a random part, which is not even: the ratio was 5.0, now 1.0. Fixed seeds.
+TEST(Render, EachSurfaceOfAPixelHasEvenPoints) {
   RenderSettings s = quick();
   s.integrator = Integrator::kDirect;
   s.sampler = SamplerType::kSobol;

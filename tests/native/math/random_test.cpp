@@ -43,6 +43,53 @@ TEST(Sobol, AlignedBlocksAreNetsInOneDimension) {
   }
 }
 
+// Number of the 2^a x 2^(m-a) intervals that hold none of the points that `of` gives, of 2^m visits.
+template <class Of>
+size_t emptyCells(uint32_t m, uint32_t a, const Of& of) {
+  std::set<uint32_t> cells;
+  for (uint32_t j = 0; j < 1u << m; ++j)
+    of(j, [&](Vec2f p) { cells.insert((cellOf(p.x, 1u << a) << (m - a)) + cellOf(p.y, 1u << (m - a))); });
+  return (size_t{1} << m) - cells.size();
+}
+
+// Of a technique all points are a net, and two points a visit fill twice as many intervals along each axis.
+TEST(Visit, PointsAreNets) {
+  const Sampler sampler(SamplerType::kSobol, 1, 16);
+  for (uint32_t pixel = 0; pixel < 5; ++pixel)
+    for (uint32_t m = 0; m <= 8; ++m) {
+      const auto visit = [&](uint32_t j) { return Sampler::Visit(sampler, sampler.pixelKey(pixel, 3), 7, j); };
+      for (uint32_t a = 0; a <= m; ++a)
+        EXPECT_EQ(emptyCells(m, a, [&](uint32_t j, const auto& add) { add(visit(j).point<Vec2f>(9, 0)); }), 0u);
+      for (uint32_t a : {0u, m + 1}) {
+        const auto both = [&](uint32_t j, const auto& add) {
+          if (j % 2 == 0)  // emptyCells counts 2^(m + 1) points
+            for (uint32_t k : {0u, 1u}) add(visit(j / 2).point<Vec2f>(9, k));
+        };
+        EXPECT_EQ(emptyCells(m + 1, a, both), 0u) << m;
+      }
+    }
+}
+
+// Where one number decides which visits there are, the points of these are as even as three dimensions can be: of 2^m
+// visits half remain, and each fourth of an interval holds one at least. With orders of their own a random half
+// remains.
+TEST(Visit, PointsOfSomeVisitsAreEven) {
+  const Sampler sampler(SamplerType::kSobol, 1, 16);
+  for (uint32_t pixel = 0; pixel < 20; ++pixel)
+    for (uint32_t half = 0; half < 3; ++half)
+      for (uint32_t m = 6; m <= 9; ++m) {
+        std::set<uint32_t> x, y;
+        for (uint32_t j = 0; j < 1u << m; ++j) {
+          const Sampler::Visit visit(sampler, sampler.pixelKey(pixel, 3), 0, j);
+          const Vec2f film = visit.film(0), point = visit.point<Vec2f>(4, 0);
+          if ((half == 0 ? visit.counts(2) : half == 1 ? film.x : film.y) >= 0.5f) continue;
+          x.insert(cellOf(point.x, 1u << (m - 3))), y.insert(cellOf(point.y, 1u << (m - 3)));
+        }
+        EXPECT_EQ(x.size(), 1u << (m - 3)) << half << ' ' << m;
+        EXPECT_EQ(y.size(), 1u << (m - 3)) << half << ' ' << m;
+      }
+}
+
 TEST(Stratified, FillsEveryCell) {
   for (uint32_t block : {1u, 2u, 3u, 5u, 16u, 37u, 256u}) {
     const Sampler sampler(SamplerType::kStratified, 3, block);
