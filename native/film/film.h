@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is accumulated per pixel. Each pixel is written by one thread at a time and in the order of its samples, so that
-// the image does not depend on the number of threads.
+// What is accumulated per pixel. Each pixel is written by one thread at a time, and its sums do not depend on their
+// order: the image depends neither on the number of threads nor on how its samples are shared out.
 #pragma once
 
 #include <algorithm>
@@ -8,52 +8,57 @@
 #include <vector>
 
 #include "math/component.h"
+#include "math/exact_sum.h"
 #include "math/vec.h"
 
 namespace wardmis {
 
+// Sums over three channels.
+using RgbSum = ExactSum<3>;
+template <class Sum>
+void addTo(Sum& sum, Vec3f v) {
+  sum.add({double(v.x), double(v.y), double(v.z)});
+}
+
 struct Pixel {
-  std::array<double, 3> sum{}, squares{};  // of the samples' radiance
-  float alpha = 0;
-  float depth = 1e10f;  // planar, of the first sample
-  Vec3f normal{0, 0, 0};
-  Rgb albedo{0, 0, 0};
+  RgbSum sum, squares;  // of the samples' radiance
+  UnitSum<1> alpha;
+  UnitSum<3> normal, albedo;
+  float depth = 1e10f;  // planar, of the image's first sample
 
   void add(Rgb v) {
-    const float c[3] = {v.x, v.y, v.z};
-    for (size_t i = 0; i < 3; ++i) {
-      sum[i] += double(c[i]);
-      squares[i] += double(c[i]) * double(c[i]);
-    }
+    const std::array<double, 3> c{double(v.x), double(v.y), double(v.z)};
+    sum.add(c);
+    squares.add({c[0] * c[0], c[1] * c[1], c[2] * c[2]});
   }
 };
 
 // What the camera meets first, for compositing: kept where a pass of it is wanted.
 struct DataPixel {
-  Vec3f position{0, 0, 0};                          // world; of the first sample, as the indices are
-  float objectIndex = 0, materialIndex = 0;         // 0 where nothing was hit
-  Vec3f uv{0, 0, 0};                                // sum over the samples of (u, v, 1)
-  std::array<double, 3> emission{}, environment{};  // sums of what is seen of them without a surface between
+  Vec3f position{0, 0, 0};                   // world; of the first sample, as the indices are
+  float objectIndex = 0, materialIndex = 0;  // 0 where nothing was hit
+  RgbSum uv;                                 // over the samples of (u, v, 1)
+  RgbSum emission, environment;              // of what is seen of them without a surface between
 
-  static void add(std::array<double, 3>& sum, Rgb v) {
-    if (isFinite(v)) sum = {sum[0] + double(v.x), sum[1] + double(v.y), sum[2] + double(v.z)};
+  static void add(RgbSum& sum, Rgb v) {
+    if (isFinite(v)) addTo(sum, v);
   }
 };
 
 // Light by the component of the surface that the camera meets first: sums of what arrives there directly, by way of
 // other surfaces, and of its own colour. Kept where a pass of it is wanted.
 struct LightPixel {
-  using Sums = std::array<std::array<double, 3>, kComponents>;
-  Sums direct{}, indirect{}, color{};
+  using Sums = std::array<RgbSum, kComponents>;
+  Sums direct, indirect, color;
 };
 
 // Of a pixel where the camera may meet shadow catchers first. Their light is no part of the picture, but by how much it
 // is less than where nothing but catchers is (as in Cycles): a quotient, so of what the samples bring sums are kept.
 struct CatcherPixel {
-  std::array<double, 3> light{}, alone{};  // that catchers send, of Pixel::sum; and where they are alone
-  std::array<double, 3> sky{};  // that is seen, or would be behind catchers; of a film that is not transparent
-  double covered = 0;           // samples, by what else than catchers they see
-  uint32_t caught = 0;          // samples that see catchers
+  RgbSum light, alone;  // that catchers send, of Pixel::sum; and where they are alone
+  RgbSum sky;           // that is seen, or would be behind catchers; of a film that is not transparent
+  UnitSum<1> covered;   // samples, by what else than catchers they see
+  uint32_t caught = 0;  // samples that see catchers
 };
 
 struct FilmBuffer {
@@ -65,7 +70,8 @@ struct FilmBuffer {
   std::vector<LightPixel> light;       // likewise
   std::vector<CatcherPixel> catchers;  // of each pixel; empty where there are none
   bool transparent = false;            // without the sky
-  uint32_t samples = 0;                // camera samples that every pixel has
+  uint32_t first = 0;                  // of the image's camera samples, the first that is here
+  uint32_t samples = 0;                // from there on, that every pixel has
 
   FilmBuffer() = default;
   FilmBuffer(int w, int h, size_t techniqueCount = 0)
@@ -89,10 +95,10 @@ struct FilmBuffer {
   std::array<float, 4> combined(size_t index) const {
     const Pixel& p = pixels[index];
     const Rgb c = mean(p);
-    const double alpha = samples > 0 ? double(p.alpha) / samples : 0;
+    const double alpha = samples > 0 ? p.alpha[0] / samples : 0;
     if (catchers.empty() || samples == 0) return {c.x, c.y, c.z, static_cast<float>(alpha)};
     const CatcherPixel& k = catchers[index];
-    const double covered = std::clamp(k.covered / samples, 0.0, 1.0);
+    const double covered = std::clamp(k.covered[0] / samples, 0.0, 1.0);
     double lit = 1;
     if (k.caught > 0) {
       lit = 0;

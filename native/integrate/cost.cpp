@@ -59,7 +59,7 @@ TechniqueCost measureWith(const BuiltScene& built, const RenderSettings& setting
     setup.input.fractions = turn.fractions;
     setup.input.samplesPerHit = turn.samples;
     FilmBuffer film = setup.film();
-    film.samples = round;
+    film.first = round;
     tbb::enumerable_thread_specific<Counts> counts;
     std::atomic<int> done{0};
     const double before = cpuSeconds();

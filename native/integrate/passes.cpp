@@ -17,6 +17,12 @@ struct PassSource {
   Getter get;
 };
 
+template <class Sum>  // of three channels
+Value meanOf(const FilmBuffer& f, const Sum& sum) {
+  const double s = f.samples > 0 ? 1.0 / f.samples : 0;
+  return {static_cast<float>(sum[0] * s), static_cast<float>(sum[1] * s), static_cast<float>(sum[2] * s), 0};
+}
+
 const std::vector<PassSource>& sources() {
   static const std::vector<PassSource> all = {
       {{"Combined", "RGBA", "combined"}, [](const FilmBuffer& f, size_t i) -> Value { return f.combined(i); }},
@@ -25,17 +31,9 @@ const std::vector<PassSource>& sources() {
          return {f.pixels[i].depth, 0, 0, 0};
        }},
       {{"Normal", "XYZ", "normal"},
-       [](const FilmBuffer& f, size_t i) -> Value {
-         const Pixel& p = f.pixels[i];
-         const float s = f.samples > 0 ? 1 / static_cast<float>(f.samples) : 0;
-         return {p.normal.x * s, p.normal.y * s, p.normal.z * s, 0};
-       }},
+       [](const FilmBuffer& f, size_t i) -> Value { return meanOf(f, f.pixels[i].normal); }},
       {{"Albedo", "RGB", "albedo"},
-       [](const FilmBuffer& f, size_t i) -> Value {
-         const Pixel& p = f.pixels[i];
-         const float s = f.samples > 0 ? 1 / static_cast<float>(f.samples) : 0;
-         return {p.albedo.x * s, p.albedo.y * s, p.albedo.z * s, 0};
-       }},
+       [](const FilmBuffer& f, size_t i) -> Value { return meanOf(f, f.pixels[i].albedo); }},
       {{"Variance", "RGB", "variance"},
        [](const FilmBuffer& f, size_t i) -> Value {
          const Pixel& p = f.pixels[i];
@@ -46,11 +44,6 @@ const std::vector<PassSource>& sources() {
   return all;
 }
 
-Value meanOf(const FilmBuffer& f, const std::array<double, 3>& sum) {
-  const double s = f.samples > 0 ? 1.0 / f.samples : 0;
-  return {static_cast<float>(sum[0] * s), static_cast<float>(sum[1] * s), static_cast<float>(sum[2] * s), 0};
-}
-
 const std::vector<PassSource>& dataSources() {
   static const std::vector<PassSource> all = {
       {{"Position", "XYZ", "position", true},
@@ -58,11 +51,7 @@ const std::vector<PassSource>& dataSources() {
          const Vec3f p = f.data[i].position;
          return {p.x, p.y, p.z, 0};
        }},
-      {{"UV", "UVA", "uv", true},
-       [](const FilmBuffer& f, size_t i) -> Value {
-         const Vec3f uv = f.data[i].uv;
-         return meanOf(f, {double(uv.x), double(uv.y), double(uv.z)});
-       }},
+      {{"UV", "UVA", "uv", true}, [](const FilmBuffer& f, size_t i) -> Value { return meanOf(f, f.data[i].uv); }},
       {{"Object Index", "X", "object-index", true},
        [](const FilmBuffer& f, size_t i) -> Value {
          return {f.data[i].objectIndex, 0, 0, 0};
@@ -81,7 +70,7 @@ const std::vector<PassSource>& dataSources() {
 
 // What arrives by what of it is sent on. Where a channel sends nothing on, as the mean of the others, so that light on
 // a surface of pure red is white: as Cycles.
-Value dividedBy(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+Value dividedBy(const RgbSum& a, const RgbSum& b) {
   std::array<double, 3> v{};
   double sum = 0;
   int n = 0;

@@ -208,7 +208,7 @@ void renderTiles(const RenderSetup<K>& setup, FilmBuffer& film, uint32_t samples
                             ty * kTileSize,
                             std::min(film.width, (tx + 1) * kTileSize),
                             std::min(film.height, (ty + 1) * kTileSize),
-                            film.samples,
+                            film.first + film.samples,
                             samples};
             setup.kernel(setup.input, tile, film, pilot, counts());
             ++tilesDone;

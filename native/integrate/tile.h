@@ -16,7 +16,7 @@ template <class X>
   const Placement& placement = world.geometry.placements[hit.placement];
   const Shape& shape = world.geometry.shapes[hit.shape];
   const Vec2f uv = detail::uvAt(shape, hit);
-  data.uv += Vec3f{uv.x, uv.y, 1};
+  DataPixel::add(data.uv, {uv.x, uv.y, 1});
   if (!first) return;
   data.position = x.position;
   data.objectIndex = placement.object != nullptr ? placement.object->index : 0;
@@ -70,14 +70,14 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
   }
   const float shown = (seenThrough.x + seenThrough.y + seenThrough.z) / 3;  // of what is met, by what is before it
   const bool hole = met != nullptr ? met->holdout : !covered;
-  pixel.alpha += hole ? 1 - shown : 1;
+  pixel.alpha.add({double(hole ? 1 - shown : 1)});
   if (met == nullptr || met->holdout) return sum;
 
   const auto x = interact<N, K>(world.scene, world.geometry, ray, hit);
   const auto& s = x.surface;
   if constexpr ((N & kNeedsLobes) != 0)
     if (s.holdout > 0) {
-      pixel.alpha -= std::min(s.holdout, 1.0f) * shown;
+      pixel.alpha.add({-double(std::min(s.holdout, 1.0f) * shown)});
       if (s.holdout >= 1) return sum;
     }
   sum += x.emission * seenThrough;
@@ -86,8 +86,8 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
     note(*data, world, hit, x, sample == 0);
   }
   if (sample == 0) pixel.depth = in.camera.depth(ray, hit.t);
-  pixel.normal += x.frame.z * shown;
-  pixel.albedo += s.albedo() * seenThrough;
+  addTo(pixel.normal, x.frame.z * shown);
+  addTo(pixel.albedo, s.albedo() * seenThrough);
   const auto addLight = [&](LightPixel::Sums& sums, const std::array<Rgb, kComponents>& values, Rgb by) {
     for (size_t c = 0; c < kComponents; ++c) DataPixel::add(sums[c], values[c] * by);
   };
@@ -163,15 +163,15 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
 // Adds to a pixel's sums what `value`, of a camera sample that is told in `seen`, is with shadow catchers. again: the
 // same sample where they are alone; writes what it is told.
 template <class Again>
-[[gnu::noinline]] void addCatchers(CatcherPixel& sums, Rgb value, float exposure, float alpha,
+[[gnu::noinline]] void addCatchers(CatcherPixel& sums, Rgb value, float exposure, double alpha,
                                    const CatcherSample& seen, const Again& again) {
   DataPixel::add(sums.sky, seen.sky * exposure);
   if (!seen.caught) {
-    sums.covered += double(alpha);
+    sums.covered.add({alpha});
     return;
   }
   const Rgb through = seen.through;
-  sums.covered += 1 - double(through.x + through.y + through.z) / 3;
+  sums.covered.add({1 - double(through.x + through.y + through.z) / 3});
   ++sums.caught;
   DataPixel::add(sums.light, value - seen.before * exposure);
   CatcherSample alone;
@@ -210,7 +210,7 @@ void renderTile(const KernelInput<K>& in, const Tile& tile, FilmBuffer& film, Pi
         const Ray ray = in.camera.ray(static_cast<float>(px) + side * (0.5f + offset.x),
                                       static_cast<float>(py) + side * (0.5f + offset.y), lens, time);
         if (!(ray.tMax > 0)) [[unlikely]] {
-          pixel.alpha += 1;  // black, and no hole in the picture, as Cycles has it
+          pixel.alpha.add({1});  // black, and no hole in the picture, as Cycles has it
           pixel.add({0, 0, 0});
           continue;
         }
@@ -230,10 +230,11 @@ void renderTile(const KernelInput<K>& in, const Tile& tile, FilmBuffer& film, Pi
                           exposure;
         if (!counts.rare.admit(value, in.least)) continue;
         pixel.add(value);
-        addCatchers(film.catchers[index], value, exposure, pixel.alpha - again.alpha, seen, [&](CatcherSample& alone) {
-          return cameraSample<N, K>(in, *in.catchers, ray, key, s, allocated, again, nullptr, nullptr, &alone, nullptr,
-                                    nullptr, nullptr, nullptr, counts);
-        });
+        addCatchers(film.catchers[index], value, exposure, pixel.alpha[0] - again.alpha[0], seen,
+                    [&](CatcherSample& alone) {
+                      return cameraSample<N, K>(in, *in.catchers, ray, key, s, allocated, again, nullptr, nullptr,
+                                                &alone, nullptr, nullptr, nullptr, nullptr, counts);
+                    });
       }
     }
 }

@@ -65,9 +65,9 @@ TEST(FilmBuffer, PixelsAreDistinct) {
   FilmBuffer film(4, 3);
   EXPECT_EQ(film.pixels.size(), 12u);
   for (int y = 0; y < 3; ++y)
-    for (int x = 0; x < 4; ++x) film.at(x, y).alpha = static_cast<float>(10 * y + x);
-  EXPECT_EQ(film.at(3, 2).alpha, 23);
-  EXPECT_EQ(film.pixels[4].alpha, 10);  // rows one after the other, the bottom one first
+    for (int x = 0; x < 4; ++x) film.at(x, y).alpha.add({double(10 * y + x)});
+  EXPECT_EQ(film.at(3, 2).alpha[0], 23);
+  EXPECT_EQ(film.pixels[4].alpha[0], 10);  // rows one after the other, the bottom one first
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ TEST(MotionBlur, ShowsAThingForAsLongAsItIsThere) {
   const FilmBuffer film = renderScene(passing(), settings(1024));
   for (const Pixel& p : film.pixels) {
     EXPECT_NEAR(film.mean(p).x, 1, 0.02);  // Sobol's points: better than 1 in 100
-    EXPECT_NEAR(p.alpha / 1024, 1 / 3.0, 0.01);
+    EXPECT_NEAR(p.alpha[0] / 1024, 1 / 3.0, 0.01);
   }
 }
 
@@ -98,10 +98,10 @@ TEST(Holdout, IsAHoleForTheCameraAlone) {
   scene.instances[0].motion = nullptr;
   scene.film.transparent = false;
   worldOf(scene).radiance = {1, 1, 1};
-  EXPECT_GT(renderScene(scene, settings(4)).pixels[0].alpha, 3.9f);
+  EXPECT_GT(renderScene(scene, settings(4)).pixels[0].alpha[0], 3.9f);
   scene.instances[0].holdout = true;
   for (const Pixel& p : renderScene(scene, settings(4)).pixels) {
-    EXPECT_EQ(p.alpha, 0);
+    EXPECT_EQ(p.alpha[0], 0);
     EXPECT_EQ(p.sum[0], 0);
     EXPECT_EQ(p.depth, 1e10f);
   }
@@ -127,7 +127,7 @@ TEST(DataPasses, AreOfWhatIsMetFirst) {
     const DataPixel& d = film.data[i];
     EXPECT_EQ(d.objectIndex, on ? 7 : 0) << i;
     EXPECT_EQ(d.materialIndex, on ? 3 : 0);
-    EXPECT_EQ(d.uv.z, on ? 4 : 0);
+    EXPECT_EQ(d.uv[2], on ? 4 : 0);
     EXPECT_NEAR(d.emission[0] / 4, on ? 6 : 0, 1e-6);
     EXPECT_NEAR(d.environment[1] / 4, on ? 0 : 1, 1e-6);
     EXPECT_NEAR(d.position.z, 0, 1e-6f);
@@ -194,7 +194,7 @@ TEST(Holdout, OfAClosureIsAHoleByItsWeight) {
   lookFrom(scene, 0.3f, 0.1f, 4);
   const FilmBuffer film = renderScene(scene, settings(256));
   for (const Pixel& p : film.pixels) {
-    EXPECT_NEAR(p.alpha / 256, 0.75f, 1e-5f);
+    EXPECT_NEAR(p.alpha[0] / 256, 0.75f, 1e-5f);
     EXPECT_NEAR(film.mean(p).x, 0.6, 0.02);
   }
 }

@@ -288,8 +288,8 @@ TEST(Render, CountsThemselvesAreNoNoise) {
   expectOfAuto(block(ward({0.8f, 0.8f, 0.8f}, {0.04f, 0.04f, 0.04f}, 0.3f, WardVariant::kWardGmd)), s, 1.1);
 }
 
-// Pixels on the edges of a block see two of its faces, whose shares differ. Of a sequence that does not know of the film
-// each face takes a random part, which is not even: the ratio was 5.0, now 1.0. Fixed seeds.
+// Pixels on the edges of a block see two of its faces, whose shares differ. Of a sequence that does not know of the
+// film each face takes a random part, which is not even: the ratio was 5.0, now 1.0. Fixed seeds.
 TEST(Render, EachSurfaceOfAPixelHasEvenPoints) {
   RenderSettings s = quick();
   s.integrator = Integrator::kDirect;
@@ -443,7 +443,7 @@ TEST(Render, RefusesWhatMemoryDoesNotHold) {
   }
   RenderSettings s;
   s.allocation = Allocation::kAuto;
-  EXPECT_LE(bytesPerPixel(s, 1), 250u);
+  EXPECT_LE(bytesPerPixel(s, 1), 270u);
 }
 
 // The sun through a grille: a light sample scatters over the hits, and not at any of them, so that more light samples
@@ -623,7 +623,8 @@ TEST(Render, InstancesAreCopies) {
     sumA += double(luminance(a.mean(a.pixels[i]))), sumB += double(luminance(b.mean(b.pixels[i])));
     variance += double(luminance(a.variance(a.pixels[i]))) + double(luminance(b.variance(b.pixels[i])));
     EXPECT_NEAR(a.pixels[i].depth, b.pixels[i].depth, 1e-3f * a.pixels[i].depth) << i;
-    EXPECT_LT(length(a.pixels[i].normal - b.pixels[i].normal), 2.0f) << i;  // of a sum over 256 samples
+    for (size_t c = 0; c < 3; ++c)  // of a sum over 256 samples
+      EXPECT_NEAR(a.pixels[i].normal[c], b.pixels[i].normal[c], 1.5) << i;
   }
   EXPECT_LT(std::abs(sumA - sumB), 4 * std::sqrt(variance));
 }

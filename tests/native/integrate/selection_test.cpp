@@ -187,7 +187,7 @@ TEST(Selection, ATexelThatShinesIsAimedAt) {
   addPlane(scene, 1, 1, 1.5f);
   scene.meshes.back().parts[0].uvs = Array<Vec2f>::of({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
   RenderSettings s;
-  s.spp = 256;
+  s.spp = 2048;
   s.integrator = Integrator::kDirect;
   s.allocation = Allocation::kEqual;
   s.samplesPerHit = 16;

@@ -128,7 +128,7 @@ TEST(Worlds, HiddenFromTheCameraAreBlackThere) {
   worldOf(scene).visibility = kSeenBySurfaces;
   const FilmBuffer film = renderScene(scene, settings(Integrand::kSplit, Integrator::kDirect, 4));
   EXPECT_EQ(measure(film).mean, 0);
-  EXPECT_EQ(film.pixels[0].alpha, 4);  // of a film that is not transparent
+  EXPECT_EQ(film.pixels[0].alpha[0], 4);  // of a film that is not transparent
 }
 
 // What no surface sees is not aimed at, and asks for no rays.
