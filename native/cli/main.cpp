@@ -62,6 +62,7 @@ int main(int argc, char** argv) {
       add("render", "render a scene to a multi-layer EXR", wardmis::addRender),
       add("info", "what a scene holds, needs, and leaves out", wardmis::addInfo),
       add("compare", "the error of an image against a reference", wardmis::addCompare),
+      add("merge", "add the samples of parts of an image, rendered apart", wardmis::addMerge),
       add("converge", "error against run time of several configurations: a report", wardmis::addConverge),
       add("study", "the paper's estimators at one shading point: exactly, and by trials", wardmis::addStudy),
       add("stability", "stiff and extreme cases of the numbers, each judged by stated thresholds",

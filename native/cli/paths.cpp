@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -31,6 +32,13 @@ void checkWritable(const std::string& path) {
                 "check its permissions, or choose another one");
   close(fd);
   unlink(probe.c_str());
+}
+
+void checkNamedExr(const std::string& path) {
+  std::string extension = fs::path(path).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (extension != ".exr")
+    throw Error(ExitCode::kUsage, fmt::format("{}: the image is an OpenEXR", path), "give a name that ends in .exr");
 }
 
 void checkDistinct(std::initializer_list<NamedFile> files) {

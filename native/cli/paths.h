@@ -17,6 +17,9 @@ struct NamedFile {
 // folder.
 void checkWritable(const std::string& path);
 
+// Throws Error(kUsage) unless `path` is called as an OpenEXR.
+void checkNamedExr(const std::string& path);
+
 // Throws Error(kUsage) if two of them are the same file, of which one would replace the other.
 void checkDistinct(std::initializer_list<NamedFile> files);
 

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -11,16 +10,18 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/options.h"
+#include "cli/part.h"
 #include "cli/paths.h"
 #include "cli/session.h"
 #include "cli/settings.h"
+#include "cli/statistics.h"
 #include "cli/verbs.h"
 #include "film/write_file.h"
 #include "gltf/reader.h"
 #include "image/texel_memory.h"
 #include "integrate/passes.h"
-#include "math/clones.h"
 #include "math/error.h"
+#include "report/provenance.h"
 #include "scene/defaults.h"
 
 namespace wardmis {
@@ -33,7 +34,7 @@ double since(Clock::time_point t) { return std::chrono::duration<double>(Clock::
 
 struct Options {
   std::string scene, output, stats, progress = "auto", preview, layer = "ViewLayer", passes, filter = "scene",
-                                    resolution;
+                                    resolution, samples;
   double previewInterval = 1;
   bool watchStdin = false, noDefaults = false;
   SettingOptions settings;
@@ -57,68 +58,6 @@ json event(const Progress& p) {
           {"samples", p.samples},   {"of", p.of > 0 ? json(p.of) : json()},
           {"fraction", p.fraction}, {"seconds", p.seconds},
           {"left", p.left}};
-}
-
-json settingsJson(const RenderSettings& s, const Scene& scene) {
-  json j = toJson(s);
-  j.update({{"spp", s.seconds > 0 ? json() : json(s.spp)},
-            {"time", s.seconds > 0 ? json(s.seconds) : json()},
-            {"seed", s.seed},
-            {"filter", name(scene.film.filter)},
-            {"filter_width", scene.film.filterWidth}});
-  return j;
-}
-
-json statisticsJson(const std::string& path, const RenderSettings& settings, const Scene& scene, const Statistics& s,
-                    const FilmBuffer& film, double read, double write, double total) {
-  const Counts& c = s.counts;
-  json samples = json::object(), rays{{"camera", c.cameraRays}};
-  for (size_t t = 0; t < s.techniqueNames.size(); ++t) {
-    samples[s.techniqueNames[t]] = c.samples[t];
-    rays[t + 1 == s.techniqueNames.size() ? "shadow" : s.techniqueNames[t]] = c.rays[t];
-  }
-  samples["total"] = Counts::sum(c.samples), rays["total"] = c.allRays();
-  double variance = 0;
-  for (const Pixel& p : film.pixels) variance += static_cast<double>(luminance(film.variance(p)));
-  variance /= static_cast<double>(std::max<size_t>(1, film.pixels.size()));
-  return {{"version", WARDMIS_VERSION},
-          {"scene", path},
-          {"settings", settingsJson(settings, scene)},
-          {"seconds",
-           {{"read", read},
-            {"build", s.buildSeconds},
-            {"pilot", s.pilotSeconds},
-            {"render", s.renderSeconds},
-            {"write", write},
-            {"total", total}}},
-          {"cpu_seconds", {{"pilot", s.pilotCpuSeconds}, {"render", s.renderCpuSeconds}}},
-          {"samples_per_pixel", film.samples},
-          {"pilot_in_image", s.allocated ? json(s.pilotKept) : json()},
-          {"pixels", film.pixels.size()},
-          {"camera_paths", c.cameraRays},
-          {"samples", std::move(samples)},
-          {"rays", std::move(rays)},
-          {"counts",
-           {{"nan", c.rare.nan},
-            {"infinite", c.rare.infinite},
-            {"negative", c.rare.negative},
-            {"underflow", c.underflows}}},
-          {"needs", describe(s.needs)},
-          {"kernel", describe(s.kernel)},
-          {"allocated", s.allocated},
-          {"cost", s.cost},
-          {"cost_of_hit", s.costOfHit},
-          {"left_out", s.leftOut},
-          {"notes", scene.notes},
-          {"scene_counts",
-           {{"triangles", s.triangles},
-            {"instances", s.instances},
-            {"materials", scene.materials.size()},
-            {"lights", scene.lights.size()},
-            {"emissive_triangles", s.emissiveTriangles}}},
-          {"mean_variance", variance},
-          {"threads", s.threads},
-          {"isa", clonedFor()}};
 }
 
 // `list` as --passes has it; empty: what a scene with `techniques` has. A pass that is named is there for every scene,
@@ -151,24 +90,34 @@ std::vector<PassInfo> choosePasses(const std::string& list, TechniqueMask techni
   return chosen;
 }
 
-bool isNamedExr(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension == ".exr";
+// FROM..TO, as --samples has it.
+SampleRange rangeOf(const std::string& text, uint32_t spp) {
+  const size_t dots = text.find("..");
+  SampleRange r;
+  if (dots == text.npos || !CLI::detail::lexical_cast(text.substr(0, dots), r.from) ||
+      !CLI::detail::lexical_cast(text.substr(dots + 2), r.to) || r.from >= r.to || r.to > spp)
+    throw Error(ExitCode::kUsage, fmt::format("--samples '{}' is no part of {} samples (--spp)", text, spp),
+                fmt::format("give FROM..TO with 0 <= FROM < TO <= {}; TO is not one of them", spp));
+  return r;
 }
 
 int run(Options& o) {
   const auto start = Clock::now();
   RenderSettings s = o.settings.chosen();
   s.spp = o.spp, s.seconds = o.seconds, s.seed = o.seed, s.threads = o.threads;
+  if (!o.samples.empty()) {
+    s.part = rangeOf(o.samples, s.spp);
+    if (s.allocation == Allocation::kAuto && s.costFrom == CostFrom::kMeasured)
+      throw Error(ExitCode::kUsage, "--samples with --cost measured: each part would measure other costs",
+                  "leave one of them out, or give the costs: --cost L,C,S");
+  }
   for (const PassInfo& p : choosePasses(o.passes, 0, {"any"}))  // whether they exist
     s.data = s.data || p.data, s.light = s.light || p.light;
   checkDistinct({{"SCENE", o.scene}, {"--output", o.output}, {"--stats", o.stats}, {"--preview", o.preview}});
   for (const std::string* path : {&o.output, &o.stats, &o.preview})
     if (!path->empty()) checkWritable(*path);
   for (const std::string* path : {&o.output, &o.preview})
-    if (!path->empty() && !isNamedExr(*path))
-      throw Error(ExitCode::kUsage, fmt::format("{}: the image is an OpenEXR", *path), "give a name that ends in .exr");
+    if (!path->empty()) checkNamedExr(*path);
 
   const std::atomic<Stop>& stopRequest = stopOnSignals(o.watchStdin);
   Reporter reporter(o.progress);
@@ -193,7 +142,7 @@ int run(Options& o) {
                     {"version", WARDMIS_VERSION},
                     {"width", scene.film.x1 - scene.film.x0},
                     {"height", scene.film.y1 - scene.film.y0},
-                    {"spp", s.seconds > 0 ? json() : json(s.spp)},
+                    {"spp", s.seconds > 0 ? json() : json(s.range().count())},
                     {"passes", passes},
                     {"left_out", st.leftOut},
                     {"notes", scene.notes}});
@@ -238,19 +187,24 @@ int run(Options& o) {
   }
 
   const auto writeStart = Clock::now();
-  ExrImage image =
-      toPasses(film, choosePasses(o.passes, st.techniques, st.techniqueNames), st.techniqueNames, o.layer, scene.zUp);
+  const ImageDescription description{o.layer, scene.zUp, choosePasses(o.passes, st.techniques, st.techniqueNames),
+                                     st.techniqueNames};
+  ExrImage image = toImage(film, description);
   const json statsBefore = statisticsJson(o.scene, s, scene, st, film, readSeconds, 0, since(start));
-  for (const char* key : {"version", "settings", "seconds", "samples_per_pixel", "samples", "rays", "counts", "needs",
-                          "kernel", "left_out", "notes", "threads"}) {
-    const json& v = statsBefore.at(key);
-    image.attributes.emplace_back(
-        fmt::format("wardmis:{}", key),
-        v.is_string() ? v.get<std::string>() : v.dump(-1, ' ', false, json::error_handler_t::replace));
+  describe(image, statsBefore);
+  if (s.part) {
+    const Film& f = scene.film;
+    makePart(image, film,
+             {{"scene", hashOf(scene.files)},
+              {"samples", s.spp},
+              {"frame", {f.width, f.height}},
+              {"border", {f.x0, f.y0, f.x1, f.y1}},
+              {"defaults", !o.noDefaults}},
+             description, statsBefore, countsJson(st.pilotCounts, st.techniqueNames));
   }
   writeExr(output, image, true);
   const json stats = statisticsJson(o.scene, s, scene, st, film, readSeconds, since(writeStart), since(start));
-  if (!o.stats.empty()) writeFile(o.stats, stats.dump(2, ' ', false, json::error_handler_t::replace) + '\n');
+  if (!o.stats.empty()) writeFile(o.stats, dumped(stats, 2) + '\n');
 
   const RareCounts& rare = st.counts.rare;
   if (rare.total() > 0)
@@ -259,7 +213,10 @@ int run(Options& o) {
         rare.total(), st.counts.cameraRays, rare.nan, rare.infinite, rare.negative));
   if (stopped == Stop::kKeep)
     throw Error(ExitCode::kCancelled,
-                fmt::format("cancelled after {} samples per pixel; the image so far is in {}", film.samples, output));
+                fmt::format("cancelled after {} samples per pixel; {} {}", film.samples,
+                            s.part ? fmt::format("samples {}..{} are in", film.first, film.first + film.samples)
+                                   : "the image so far is in",
+                            output));
   reporter.event(
       {{"event", "done"}, {"path", output}, {"seconds", since(start)}, {"samples", film.samples}, {"stats", stats}});
   if (!reporter.json())
@@ -279,9 +236,14 @@ Verb addRender(CLI::App& app) {
       app.add_option("--spp", o->spp, "camera samples per pixel, the pilot's included if it is part of the image")
           ->check(CLI::Range(1u, 1u << 24))
           ->capture_default_str();
-  app.add_option("--time", o->seconds, "stop after this many seconds instead, the pilot's included")
-      ->check(between(0.001, 1e7))
-      ->excludes(spp);
+  auto* time = app.add_option("--time", o->seconds, "stop after this many seconds instead, the pilot's included")
+                   ->check(between(0.001, 1e7))
+                   ->excludes(spp);
+  app.add_option(
+         "--samples", o->samples,
+         "FROM..TO: of the --spp samples these alone (TO is not one of them), as a part that 'wardmis merge' adds "
+         "to others")
+      ->excludes(time);
   app.add_option("--filter", o->filter, "pixel filter")->check(among(kFilters, {"scene"}))->capture_default_str();
   app.add_option("--seed", o->seed, "another seed, another noise")->check(wholeNumber())->capture_default_str();
   app.add_option("--threads", o->threads, "0: all; the image does not depend on it")

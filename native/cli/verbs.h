@@ -10,6 +10,7 @@ namespace wardmis {
 using Verb = std::function<int()>;
 
 Verb addRender(CLI::App& app);
+Verb addMerge(CLI::App& app);
 Verb addInfo(CLI::App& app);
 Verb addCompare(CLI::App& app);
 Verb addConverge(CLI::App& app);

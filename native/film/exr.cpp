@@ -26,12 +26,16 @@ std::string encode(const ExrImage& image, bool compress) {
   Imf::Header header(image.width, image.height);
   header.compression() = compress ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION;
   Imf::FrameBuffer frame;
-  for (const ExrChannel& c : image.channels) {
-    header.channels().insert(c.name, Imf::Channel(Imf::FLOAT));
-    // OpenEXR's slices are not const, its writer only reads them
-    auto* base = reinterpret_cast<char*>(const_cast<float*>(c.values.data()));
-    frame.insert(c.name, Imf::Slice(Imf::FLOAT, base, sizeof(float), sizeof(float) * static_cast<size_t>(image.width)));
-  }
+  const auto insert = [&](const auto& channels, Imf::PixelType type) {
+    for (const auto& c : channels) {
+      header.channels().insert(c.name, Imf::Channel(type));
+      constexpr size_t kSize = sizeof(c.values[0]);
+      // OpenEXR's slices are not const, its writer only reads them
+      auto* base = const_cast<char*>(reinterpret_cast<const char*>(c.values.data()));
+      frame.insert(c.name, Imf::Slice(type, base, kSize, kSize * static_cast<size_t>(image.width)));
+    }
+  };
+  insert(image.channels, Imf::FLOAT), insert(image.words, Imf::UINT);
   for (const auto& [name, value] : image.attributes) header.insert(name, Imf::StringAttribute(value));
   Imf::StdOSStream stream;
   {
@@ -42,28 +46,50 @@ std::string encode(const ExrImage& image, bool compress) {
   return stream.str();
 }
 
+std::vector<std::pair<std::string, std::string>> textsOf(const Imf::Header& header) {
+  std::vector<std::pair<std::string, std::string>> texts;
+  for (auto a = header.begin(); a != header.end(); ++a)
+    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&a.attribute()))
+      texts.emplace_back(a.name(), text->value());
+  return texts;
+}
+
+Error unreadable(const std::filesystem::path& path, const Iex::BaseExc& e) {
+  return {ExitCode::kFile, fmt::format("{}: cannot be read as OpenEXR: {}", path.string(), e.what()),
+          "the file may be damaged; delete it, or give another"};
+}
+
 }  // namespace
 
-ExrImage readExr(const std::filesystem::path& path) try {
+ExrImage readExr(const std::filesystem::path& path, const std::string& wholeNumbers) try {
   Imf::InputFile file(path.c_str());
   const Imath::Box2i window = file.header().dataWindow();
   ExrImage image{window.max.x - window.min.x + 1, window.max.y - window.min.y + 1, {}, {}};
   const size_t width = static_cast<size_t>(image.width), count = width * static_cast<size_t>(image.height);
   const Imf::ChannelList& channels = file.header().channels();
   for (auto c = channels.begin(); c != channels.end(); ++c)
-    image.channels.push_back({c.name(), std::vector<float>(count)});
+    if (!wholeNumbers.empty() && std::string_view(c.name()).substr(0, wholeNumbers.size()) == wholeNumbers)
+      image.words.push_back({c.name(), std::vector<uint32_t>(count)});
+    else
+      image.channels.push_back({c.name(), std::vector<float>(count)});
   Imf::FrameBuffer frame;
   for (ExrChannel& c : image.channels)
     frame.insert(c.name, Imf::Slice::Make(Imf::FLOAT, c.values.data(), window, sizeof(float), sizeof(float) * width));
+  for (ExrWords& c : image.words)
+    frame.insert(c.name,
+                 Imf::Slice::Make(Imf::UINT, c.values.data(), window, sizeof(uint32_t), sizeof(uint32_t) * width));
   file.setFrameBuffer(frame);
   file.readPixels(window.min.y, window.max.y);
-  for (auto a = file.header().begin(); a != file.header().end(); ++a)
-    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&a.attribute()))
-      image.attributes.emplace_back(a.name(), text->value());
+  image.attributes = textsOf(file.header());
   return image;
 } catch (const Iex::BaseExc& e) {
-  throw Error(ExitCode::kFile, fmt::format("{}: cannot be read as OpenEXR: {}", path.string(), e.what()),
-              "the file may be damaged; delete it, or give another");
+  throw unreadable(path, e);
+}
+
+std::vector<std::pair<std::string, std::string>> readExrAttributes(const std::filesystem::path& path) try {
+  return textsOf(Imf::InputFile(path.c_str()).header());
+} catch (const Iex::BaseExc& e) {
+  throw unreadable(path, e);
 }
 
 void writeExr(const std::filesystem::path& path, const ExrImage& image, bool compress) {

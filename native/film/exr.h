@@ -2,6 +2,7 @@
 // Multi-layer OpenEXR files: written complete or not at all.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -14,10 +15,17 @@ struct ExrChannel {
   std::vector<float> values;  // width * height, row 0 is the top row
 };
 
+// A channel of whole numbers.
+struct ExrWords {
+  std::string name;
+  std::vector<uint32_t> values;  // as above
+};
+
 struct ExrImage {
   int width = 0, height = 0;
   std::vector<ExrChannel> channels;
   std::vector<std::pair<std::string, std::string>> attributes;
+  std::vector<ExrWords> words = {};
 
   // nullptr if there is no such channel.
   const std::vector<float>* channel(const std::string& name) const {
@@ -31,7 +39,11 @@ struct ExrImage {
 // Throws Error(kFile); then no file of either name is left.
 void writeExr(const std::filesystem::path& path, const ExrImage& image, bool compress);
 
-// All channels of the first part, as floats. Throws Error(kFile).
-ExrImage readExr(const std::filesystem::path& path);
+// All channels of the first part, as floats; those whose name begins so, where it is given, as whole numbers. Throws
+// Error(kFile).
+ExrImage readExr(const std::filesystem::path& path, const std::string& wholeNumbers = "");
+
+// The text attributes of its header alone. Throws Error(kFile).
+std::vector<std::pair<std::string, std::string>> readExrAttributes(const std::filesystem::path& path);
 
 }  // namespace wardmis

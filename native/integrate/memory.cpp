@@ -16,14 +16,16 @@ namespace {
 template <size_t K>
 constexpr uint64_t kWritten = (17 + K) * sizeof(float);
 
-constexpr uint64_t kData = sizeof(DataPixel) + 14 * sizeof(float), kLight = sizeof(LightPixel) + 27 * sizeof(float);
+constexpr uint64_t kDataWritten = 14 * sizeof(float), kLightWritten = 27 * sizeof(float);
 
 template <size_t K>
 uint64_t bytesPerPixelWith(const RenderSettings& s, bool catchers) {
   constexpr uint64_t kFilm = sizeof(Pixel) + K * sizeof(uint32_t);
   const uint64_t kept = kFilm + (catchers ? sizeof(CatcherPixel) : 0);
-  const uint64_t written = kept + kWritten<K> + (s.data ? kData : 0) + (s.light ? kLight : 0);
-  if (s.allocation == Allocation::kAuto)  // its pilot is over before there is a film
+  const uint64_t sums = kept + (s.data ? sizeof(DataPixel) : 0) + (s.light ? sizeof(LightPixel) : 0);
+  const uint64_t written = sums + kWritten<K> + (s.data ? kDataWritten : 0) + (s.light ? kLightWritten : 0) +
+                           (s.part ? sums : 0);  // a part has its sums in the file, too
+  if (s.allocation == Allocation::kAuto)         // its pilot is over before there is a film
     return std::max(written, (kFilm + sizeof(PilotPixel) + sizeof(CandidateSums<K>) + sizeof(PixelFractions<K>)) /
                                  (kCoarse * kCoarse));
   if (!needsMoments(s.allocation)) return written;

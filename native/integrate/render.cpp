@@ -25,6 +25,7 @@ constexpr double kPilotTime = 1.0 / 16;  // of a time limit, for the pilot of `a
 constexpr double kCoarseSample = double(kSets) / (kCoarse * kCoarse);
 
 uint32_t targetOf(const RenderSettings& s) { return s.seconds > 0 ? ~uint32_t{0} : s.spp; }
+uint32_t countOf(const RenderSettings& s) { return s.seconds > 0 ? ~uint32_t{0} : s.range().count(); }
 bool coarse(const RenderSettings& s) { return s.allocation == Allocation::kAuto; }
 // Of a render of `target` samples: at most half of them, and none of one sample. A coarse one is no part of the image
 // and is to cost little: at most a thirty-second of the render. It grows like the root of the samples: what a wrong
@@ -125,8 +126,9 @@ class Run {
     }
   }
 
-  // What follows is added to this film. apart: samples of a coarse pilot, on a film of its own, before the image's.
-  void onto(FilmBuffer& film, uint32_t apart) { film_ = &film, apart_ = apart; }
+  // What follows is added to this film. apart: samples of a pilot on a film of its own, before the image's; each: what
+  // one of these takes, in samples of the image.
+  void onto(FilmBuffer& film, uint32_t apart, double each) { film_ = &film, apart_ = apart, each_ = each; }
 
   Counts counts() {
     Counts sum;
@@ -151,12 +153,12 @@ class Run {
     Progress p;
     p.pilot = pilot;
     p.samples = film_->samples;
-    p.of = settings_.seconds > 0 ? 0 : settings_.spp;
+    p.of = settings_.seconds > 0 ? 0 : countOf(settings_);
     p.seconds = seconds();
-    const double extra = apart_ * kCoarseSample, here = double(film_->samples) + partial;
-    const double done = !pilot ? here + extra : apart_ > 0 ? here * kCoarseSample : here;
-    p.fraction =
-        settings_.seconds > 0 ? std::min(1.0, p.seconds / settings_.seconds) : done / (double(settings_.spp) + extra);
+    const double extra = apart_ * each_, here = double(film_->samples) + partial;
+    const double done = !pilot ? here + extra : apart_ > 0 ? here * each_ : here;
+    p.fraction = settings_.seconds > 0 ? std::min(1.0, p.seconds / settings_.seconds)
+                                       : done / (double(countOf(settings_)) + extra);
     p.left = settings_.seconds > 0 ? std::max(0.0, settings_.seconds - p.seconds)
              : p.fraction > 0      ? p.seconds * (1 - p.fraction) / p.fraction
                                    : 0;
@@ -168,6 +170,7 @@ class Run {
   const RenderSetup<K>& setup_;
   FilmBuffer* film_ = nullptr;
   uint32_t apart_ = 0;
+  double each_ = 0;
   Clocks start_;
   tbb::enumerable_thread_specific<Counts> counts_;
 };
@@ -211,7 +214,6 @@ FilmBuffer renderWith(const BuiltScene& built, const RenderSettings& settings, S
   if (observer.started) observer.started(stats);
   SampleCost<K>& cost = setup.input.cost;
   FractionsMap<K> map;
-  FilmBuffer buffer;
   const auto allocateFrom = [&](FilmBuffer& film, int side) {
     Pilot<K> pilot(film.width, film.height, settings.allocation);
     if (settings.costFrom == CostFrom::kRays) {
@@ -231,34 +233,44 @@ FilmBuffer renderWith(const BuiltScene& built, const RenderSettings& settings, S
     stats.pilotSeconds = time.wall, stats.pilotCpuSeconds = time.cpu;
   };
   if (stats.allocated && settings.costFrom == CostFrom::kMeasured) cost = measureCost(built, settings).perSample<K>();
-  if (stats.allocated && coarse(settings)) {
-    FilmBuffer film = setup.film(kCoarse);
-    run.onto(film, pilotSpp);
+  // A pilot that is no part of these samples is made alike for all parts of an image.
+  const uint32_t first = settings.range().from, count = countOf(settings);
+  stats.pilotKept = stats.allocated && !coarse(settings);
+  const bool apart = stats.allocated && (coarse(settings) || first > 0 || count < pilotSpp);
+  if (apart) {
+    const int side = coarse(settings) ? kCoarse : 1;
+    FilmBuffer film = setup.film(side);
+    run.onto(film, pilotSpp, coarse(settings) ? kCoarseSample : 1);
     // fractions must not depend on the points that they are used for, nor a hit's two samples on each other
     const Sampler own = setup.input.sampler;
-    setup.drawFrom({SamplerType::kIndependent, ~settings.seed, 1});
-    setup.input.side = kCoarse;
-    allocateFrom(film, kCoarse);
+    if (coarse(settings)) setup.drawFrom({SamplerType::kIndependent, ~settings.seed, 1});
+    setup.input.side = side;
+    allocateFrom(film, side);
     setup.input.side = 1;
     setup.drawFrom(own);
     pilotDone();
+    stats.pilotCounts = run.counts();
     const double samples = settings.seconds * kCoarseSample * film.samples / stats.pilotSeconds;
     if (settings.seconds > 0 && samples < kLeastForPilot) {
       setup.input.perPixel = nullptr, stats.allocated = false;
       stats.leftOut.emplace_back(kNoPilot);
     }
   }
-  buffer = setup.film();
+  FilmBuffer buffer = setup.film();
+  buffer.first = first;
   if (settings.data) buffer.data.resize(buffer.pixels.size());
   if (settings.light) buffer.light.resize(buffer.pixels.size());
   if (built.catchers) buffer.catchers.resize(buffer.pixels.size());
-  run.onto(buffer, stats.allocated && coarse(settings) ? pilotSpp : 0);
-  if (stats.allocated && !coarse(settings)) {
-    stats.pilotKept = true;
+  run.onto(buffer, stats.allocated && apart ? pilotSpp : 0, coarse(settings) ? kCoarseSample : 1);
+  if (stats.pilotKept && !apart) {
     allocateFrom(buffer, 1);
     pilotDone();
+  } else if (stats.pilotKept && first < pilotSpp) {  // what is the pilot's in the whole image
+    setup.input.perPixel = nullptr;
+    run.until(std::min(pilotSpp - first, count), nullptr);
+    setup.input.perPixel = &map;
   }
-  run.until(target, nullptr);
+  run.until(count, nullptr);
   const Clocks time = run.clocks();
   stats.renderSeconds = time.wall - stats.pilotSeconds;
   stats.renderCpuSeconds = time.cpu - stats.pilotCpuSeconds;

@@ -31,6 +31,13 @@ struct GivenCost {
   float lobe = 1, cosine = 1, light = 1;
 };
 
+// Camera samples of an image, by number.
+struct SampleRange {
+  uint32_t from = 0, to = 0;  // `to` is not one of them
+
+  uint32_t count() const { return to - from; }
+};
+
 struct RenderSettings {
   bool data = false, light = false;  // what DataPixel and LightPixel have is wanted
   Allocation allocation = Allocation::kAuto;
@@ -40,6 +47,7 @@ struct RenderSettings {
   SamplerType sampler = SamplerType::kSobol;
   uint32_t spp = 64;   // camera samples per pixel in the image, the pilot's included unless it is apart (pilotApart)
   double seconds = 0;  // > 0: stop after this time instead
+  std::optional<SampleRange> part;  // of the spp samples these alone; not with a time, nor measured costs
   int samplesPerHit = 3;
   uint32_t pilotSpp = 4;  // camera samples of the pilot per pixel, of `auto` per 2 x 2 pixels
   float minFraction = 0.1f;
@@ -55,6 +63,7 @@ struct RenderSettings {
   bool generalKernel = false;
 
   PathLimits limits() const;
+  SampleRange range() const { return part.value_or(SampleRange{0, spp}); }  // without a limit of time
   Weights weightRule() const { return weights.value_or(paperWeights(allocation)); }
 };
 
@@ -67,6 +76,7 @@ struct Statistics {
   double buildSeconds = 0, pilotSeconds = 0, renderSeconds = 0;  // wall; render excludes the pilot
   double pilotCpuSeconds = 0, renderCpuSeconds = 0;
   Counts counts;
+  Counts pilotCounts;  // of these, what a pilot that is not part of the image took
   uint32_t needs = 0, kernel = 0;
   std::vector<std::string> leftOut;
   std::vector<std::string> doubts;  // of what is seen, for the user
