@@ -555,7 +555,7 @@ def normals_of_other_lengths():
     )
 
 
-@scene(bounces=2, within=0.005, block=8, samples=64)
+@scene(bounces=2, block=8, samples=256)
 def principled_of_an_upright_normal():
     """Both its diffuse and its glossy part see light that is below the surface; since 5.0 it is neither's, but for its own samples."""
     sky((0.4, 0.45, 0.5))
