@@ -72,6 +72,7 @@ struct Lobe {
   bool refractsUp = false;    // samples go where facets refract to above the mean surface, too: strays()
   bool byFirstAxis = false;   // facets are drawn as if both axes had the first one's roughness
   bool defended = false;      // glass: neither side is drawn less often than once in nine times
+  bool paleColor = false;     // to passes of colour all facets reflect all, as in Cycles 3.4
   Rgb weight{1, 1, 1}, through{1, 1, 1};
   float ax = 1, ay = 1;
   float eta = 1;  // of the side below over that above

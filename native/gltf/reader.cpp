@@ -91,6 +91,7 @@ Film readFilm(const Json& json) {
   film.exposure = json.numberOr("exposure", 1, 0);
   film.transparent = json.booleanOr("transparent", false);
   film.keepUvs = json.booleanOr("keepUvs", false);
+  film.alphaThreshold = json.numberOr("alphaThreshold", film.alphaThreshold, 0, 1);
   if (const auto shutter = json.find("shutter")) {
     film.shutter.rolling = shutter->numberOr("rolling", -1, 0, 1);
     if (const auto curve = shutter->find("curve")) {

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "bsdf/bump_shadow.h"
+#include "bsdf/energy.h"
 #include "bsdf/lobe.h"
 #include "bsdf/shadow_terminator.h"
 #include "math/component.h"
@@ -180,16 +181,25 @@ class LobeSurface {
     for (int i = 0; i < count_; ++i) sum += albedoOf(lobe_[i]);
     return sum;
   }
-  // Albedos by component.
+  // Colours by component, for passes: as Cycles estimates albedos, by facets along the normal, and of dielectrics that
+  // blend to white by a table of the mean over facets.
   std::array<Rgb, kComponents> colors() const {
     std::array<Rgb, kComponents> sum{diffuse_, Rgb{0, 0, 0}, Rgb{0, 0, 0}};
     for (int i = 0; i < count_; ++i) {
       const Lobe& l = lobe_[i];
       Lobe near = l;
-      if (isGlass(l.kind)) near.through = {0, 0, 0};
-      const Rgb all = albedoOf(l), reflected = isGlass(l.kind) ? albedoOf(near) : all;
+      near.through = {0, 0, 0};
+      Rgb reflected = albedoAt(near, cosine(l.frame)), passed = albedoAt(l, cosine(l.frame)) - reflected;
+      if (l.paleColor) {
+        reflected = l.weight;
+      } else if (l.fresnel == Fresnel::kBlended && wardmis::reflects(l.kind)) {
+        const float s = blendAlbedo(std::sqrt(std::sqrt(l.ax * l.ay)), cosine(l.frame), l.eta);
+        const Rgb facets = l.f0 * (1 - s) + Rgb{s, s, s};
+        reflected = l.weight * facets;
+        if (isGlass(l.kind)) passed = l.through * (Rgb{1, 1, 1} - facets);
+      }
       sum[static_cast<size_t>(componentOf(l, wardmis::reflects(l.kind)))] += reflected;
-      sum[static_cast<size_t>(Component::kTransmission)] += all - reflected;
+      sum[static_cast<size_t>(Component::kTransmission)] += passed;
     }
     return sum;
   }

@@ -10,18 +10,48 @@
 
 namespace wardmis {
 
-// What the camera meets first, of one sample.
+// Where a camera ray meets a surface: what the pixel's passes of data show, of one of its samples.
 template <class X>
-[[gnu::noinline]] void note(DataPixel& data, const RenderScene& world, const Hit& hit, const X& x, bool first) {
+[[gnu::noinline]] void note(DataPixel& data, const RenderScene& world, const Hit& hit, const X& x) {
   const Placement& placement = world.geometry.placements[hit.placement];
-  const Shape& shape = world.geometry.shapes[hit.shape];
-  const Vec2f uv = detail::uvAt(shape, hit);
-  DataPixel::add(data.uv, {uv.x, uv.y, 1});
-  if (!first) return;
   data.position = x.position;
   data.objectIndex = placement.object != nullptr ? placement.object->index : 0;
   data.materialIndex = world.scene.materials[static_cast<size_t>(x.material)].index;
 }
+
+// Of surfaces that light goes straight through, what passes of data show as in Cycles: the first that is opaque enough,
+// else the last that the ray comes to.
+class Noted {
+ public:
+  Noted(const RenderScene& world, const CameraRays& camera, const Ray& ray, bool first, Pixel& pixel, DataPixel* data)
+      : world_(world), camera_(camera), ray_(ray), first_(first), pixel_(pixel), data_(data) {}
+
+  template <class X>
+  void operator()(const X& x, const Hit& hit) {
+    if (done_) return;
+    if (first_) {
+      pixel_.depth = camera_.depth(ray_, hit.t);
+      if (data_ != nullptr) [[unlikely]]
+        note(*data_, world_, hit, x);
+    }
+    const Rgb through = x.surface.transparent;
+    done_ = !(1 - (through.x + through.y + through.z) / 3 < world_.scene.film.alphaThreshold);
+    if (!done_) return;
+    addTo(pixel_.normal, x.frame.z);
+    const Shape& shape = world_.geometry.shapes[hit.shape];
+    if (data_ == nullptr || shape.part->uvs.empty()) return;
+    const Vec2f uv = detail::uvAt(shape, hit);
+    DataPixel::add(data_->uv, {uv.x, uv.y, 1});
+  }
+
+ private:
+  const RenderScene& world_;
+  const CameraRays& camera_;
+  const Ray& ray_;
+  bool first_, done_ = false;  // first: of the pixel's samples
+  Pixel& pixel_;
+  DataPixel* data_;
+};
 
 // Of a sample whose camera ray meets a shadow catcher first.
 struct CatcherSample {
@@ -44,14 +74,16 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
   Rgb sum{0, 0, 0}, seenThrough{1, 1, 1};
   bool covered = !transparent;
   Ray ray = camera;
-  const Hit hit = trace<N, K>(world, ray, combine(pixelKey, ~sample), seenThrough, [&](float tMax, bool escaped) {
+  Noted noted{world, in.camera, camera, sample == 0, pixel, data};
+  const auto along = [&](float tMax, bool escaped) {
     world.emitters.along(ray, std::min(tMax, ray.tMax), escaped && !transparent, 0, [&](const EmitterHit& e) {
       sum += e.radiance * seenThrough;
       covered = true;
       if (data != nullptr) [[unlikely]]
         DataPixel::add(e.sky ? data->environment : data->emission, e.radiance * seenThrough * exposure);
     });
-  });
+  };
+  const Hit hit = trace<N, K>(world, ray, combine(pixelKey, ~sample), seenThrough, along, noted);
   if (data != nullptr && transparent && !hit.valid()) [[unlikely]]  // a hole for the picture, and there for its pass
     world.emitters.along(ray, ray.tMin, true, 0, [&](const EmitterHit& e) {
       if (e.sky) DataPixel::add(data->environment, e.radiance * seenThrough * exposure);
@@ -83,10 +115,8 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
   sum += x.emission * seenThrough;
   if (data != nullptr) [[unlikely]] {
     DataPixel::add(data->emission, x.emission * seenThrough * exposure);
-    note(*data, world, hit, x, sample == 0);
   }
-  if (sample == 0) pixel.depth = in.camera.depth(ray, hit.t);
-  addTo(pixel.normal, x.frame.z * shown);
+  noted(x, hit);
   addTo(pixel.albedo, s.albedo() * seenThrough);
   const auto addLight = [&](LightPixel::Sums& sums, const std::array<Rgb, kComponents>& values, Rgb by) {
     for (size_t c = 0; c < kComponents; ++c) DataPixel::add(sums[c], values[c] * by);
@@ -128,11 +158,11 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
   Scratch<CandidateHit<K>, 1> candidateSums;  // ... nor this
   CandidateHit<K>* candidate = nullptr;
   LightSplit* const split = light != nullptr ? &lightSplit : nullptr;
-  const bool noted = pilot != nullptr && follows;
-  if (noted || split != nullptr) {
-    if (noted && candidates != nullptr)
+  const bool piloted = pilot != nullptr && follows;
+  if (piloted || split != nullptr) {
+    if (piloted && candidates != nullptr)
       candidate = &candidateSums.make(0, [&] { return CandidateHit<K>(in.candidates.of(mask)); });
-    record.emplace(HitRecord<K>{noted ? moments : nullptr, candidate, split});
+    record.emplace(HitRecord<K>{piloted ? moments : nullptr, candidate, split});
   }
   sum += estimate<N, K>(world, in.sampler, x, plan, counts, record ? &*record : nullptr, more) * seenThrough;
   if (split != nullptr) [[unlikely]]

@@ -55,9 +55,9 @@ inline bool mayPass(const RenderScene& world, const Ray& ray, const Hit& hit, in
 
 // The surface at which a ray ends; its t is from the ray's origin, whatever it passed. weight: of what is seen there.
 // Before that, calls along(hit t, escaped) for each stretch between two surfaces, with `weight` as it is there.
-// key: of the random numbers.
-template <uint32_t N, size_t K, class Along>
-Hit trace(const RenderScene& world, Ray& ray, uint32_t key, Rgb& weight, Along&& along) {
+// key: of the random numbers. met(x, hit): of surfaces that it passes.
+template <uint32_t N, size_t K, class Along, class Met>
+Hit trace(const RenderScene& world, Ray& ray, uint32_t key, Rgb& weight, Along&& along, Met&& met) {
   for (uint32_t passed = 0;; ++passed) {
     const Hit hit = world.accel.intersect(ray);
     along(hit.t, !hit.valid());
@@ -72,12 +72,18 @@ Hit trace(const RenderScene& world, Ray& ray, uint32_t key, Rgb& weight, Along&&
         weight = weight / (1 - q);
         return hit;
       }
+      met(x, hit);
       weight = weight * x.surface.straight() / q;
       ray.tMin = detail::behind(x, ray.direction, hit.t);
       ray.left = x.primitive;
       ray.path = ray.path.passed();
     }
   }
+}
+
+template <uint32_t N, size_t K, class Along>
+Hit trace(const RenderScene& world, Ray& ray, uint32_t key, Rgb& weight, Along&& along) {
+  return trace<N, K>(world, ray, key, weight, along, [](const auto&, const Hit&) {});
 }
 
 namespace detail {

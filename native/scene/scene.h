@@ -227,6 +227,8 @@ struct Film {
   float exposure = 1;
   bool transparent = false;
   bool keepUvs = false;  // for the pass, also where nothing is looked up by them
+  // Passes of data show what the camera meets first that is at least as opaque as that.
+  float alphaThreshold = 0.5f;
   ShutterCurve shutter;
 };
 

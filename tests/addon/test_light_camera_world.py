@@ -426,6 +426,13 @@ class Film(SceneTest):
         film = self.gather().film
         self.assertEqual((film.filter_type, film.filter_width, film.exposure), ("gaussian", 2.5, 1.75))
 
+    def test_alpha_threshold_of_passes(self):
+        self.assertEqual(self.gather().film.alpha_threshold, 0.5)
+        layer = bpy.context.view_layer
+        self.addCleanup(setattr, layer, "pass_alpha_threshold", layer.pass_alpha_threshold)
+        layer.pass_alpha_threshold = 0.25
+        self.assertEqual(self.gather().film.alpha_threshold, 0.25)
+
     def test_transparent_glass_is_named(self):
         cycles = self.scene.cycles
         self.addCleanup(setattr, cycles, "film_transparent_glass", cycles.film_transparent_glass)

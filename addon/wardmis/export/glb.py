@@ -389,6 +389,8 @@ class _Encoder:
         }
         if film.shutter:
             result["film"]["shutter"] = film.shutter
+        if film.alpha_threshold != 0.5:
+            result["film"]["alphaThreshold"] = film.alpha_threshold
         if film.keep_uvs:
             result["film"]["keepUvs"] = True
         worlds = [_world(world) for world in scene.worlds if any(world.radiance)]

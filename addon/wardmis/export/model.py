@@ -270,6 +270,7 @@ class FilmData:
     exposure: float = 1.0
     transparent: bool = False
     keep_uvs: bool = False  # for the pass
+    alpha_threshold: float = 0.5  # passes of data show what is at least as opaque
     shutter: dict[str, Any] = field(default_factory=dict)
 
 

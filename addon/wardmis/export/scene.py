@@ -87,6 +87,7 @@ def _gather(
     camera = camera or scene.camera
     film = export_film(scene)
     film.keep_uvs = depsgraph.view_layer.use_pass_uv
+    film.alpha_threshold = depsgraph.view_layer.pass_alpha_threshold
     context = ExportContext(WithinMemory(shrinking_of(depsgraph.scene)), cancelled, frame, tell)
     for deviation in not_simplified(depsgraph):
         context.note(deviation)

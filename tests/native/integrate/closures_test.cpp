@@ -450,5 +450,54 @@ TEST(Closures, HaveTheTechniquesThatTheyNeed) {
   EXPECT_EQ(names(std::vector<Closure>(7, closure(ClosureType::kGlossy)))[5], "lobe 6");
 }
 
+// Passes of data show the first surface that is opaque enough, of all samples alike; what is behind it where it is not.
+TEST(DataPasses, AreOfTheFirstThatIsOpaqueEnough) {
+  Scene scene;
+  const auto pane =
+      material({closure(ClosureType::kTransparent, kWhite, 0.4f), closure(ClosureType::kDiffuse, kWhite, 0.6f)});
+  scene.materials = {pane, material({closure(ClosureType::kDiffuse)})};
+  scene.materials[0].index = 5, scene.materials[1].index = 6;
+  addPlane(scene, 4, 0, 1);
+  addPlane(scene, 4, 1, 0);
+  worldOf(scene).radiance = {1, 1, 1};
+  lookFrom(scene, 0, 1, 8);
+  RenderSettings s = settings();
+  s.data = true;
+  scene.film.alphaThreshold = 0.5f;
+  for (const FilmBuffer film = renderScene(scene, s); size_t i : {0, 20, 63}) {
+    EXPECT_EQ(film.pixels[i].depth, 49);
+    EXPECT_EQ(film.data[i].materialIndex, 5);
+    EXPECT_NEAR(film.pixels[i].normal.z, film.samples, 1e-4);
+    EXPECT_EQ(film.data[i].position.z, 1);
+    EXPECT_EQ(film.data[i].uv.z, 0) << "there are none";
+  }
+  scene.film.alphaThreshold = 0.7f;
+  const FilmBuffer film = renderScene(scene, s);
+  int behind = 0;
+  for (size_t i = 0; i < film.pixels.size(); ++i) {
+    behind += film.data[i].materialIndex == 6 ? 1 : 0;
+    EXPECT_EQ(film.pixels[i].depth, film.data[i].materialIndex == 6 ? 50 : 49);
+  }
+  EXPECT_NEAR(behind, 0.4 * 64,
+              5 * std::sqrt(0.24 * 64));  // of one sample, the pass being of the last that it comes to
+}
+
+// To the colour passes of Cycles 3.4 the facets of a Principled node reflect all; later they reflect as its table says.
+TEST(LightPasses, ColorOfPrincipledIsThatOfItsCycles) {
+  for (const ClosureType type : {ClosureType::kPrincipled3, ClosureType::kPrincipled}) {
+    Scene scene = diffusePlane(4);
+    scene.materials = {material({closure(type)})};
+    worldOf(scene).radiance = {1, 1, 1};
+    RenderSettings s = settings();
+    s.light = true;
+    const FilmBuffer film = renderScene(scene, s);
+    const double found = film.light[5].color[size_t(Component::kGlossy)][1] / film.samples;
+    if (type == ClosureType::kPrincipled3)
+      EXPECT_NEAR(found, 1, 1e-5);
+    else
+      EXPECT_NEAR(found, 0.04, 0.01);
+  }
+}
+
 }  // namespace
 }  // namespace wardmis
