@@ -133,9 +133,21 @@ def blend(fine: int) -> dict[str, np.ndarray]:
     return {"ggx_gen_schlick_ior_s": s}
 
 
+def schlick(fine: int) -> dict[str, np.ndarray]:
+    """The same of (1 - cos)^exponent. Cycles' grid has 16 steps of 1/(1 + exponent/5); exponent 5 is half way between two."""
+    s = np.zeros((16, 16))
+    for x, rough in enumerate(axis(16)):
+        n = Normals(float(rough) ** 2 if x else 1e-8, axis(16), 128 * fine, 128 * fine)
+        above = 2 * n.cos * n.m[2] > n.wo[1]
+        for z in (7 / 15, 8 / 15):
+            s[:, x] += n.mean(np.where(above, (1 - n.cos) ** (5 / z - 5), 0)) / 2
+    return {"ggx_gen_schlick_s": s}
+
+
 NAMES = {
     "ggx_E": "kReflection", "ggx_Eavg": "kReflectionMean", "ggx_glass_E": "kGlass", "ggx_glass_Eavg": "kGlassMean",
     "ggx_glass_inv_E": "kGlassInside", "ggx_glass_inv_Eavg": "kGlassInsideMean", "ggx_gen_schlick_ior_s": "kBlend",
+    "ggx_gen_schlick_s": "kSchlick",
 }  # fmt: skip
 
 
@@ -149,6 +161,7 @@ def main() -> None:
         **glass(arguments.fine, False),
         **glass(arguments.fine, True),
         **blend(arguments.fine),
+        **schlick(arguments.fine),
     }
     if arguments.check:
         text = arguments.check.read_text()

@@ -16,5 +16,7 @@ extern const uint16_t kGlass[kCoarse * kCoarse * kCoarse], kGlassMean[kCoarse * 
 extern const uint16_t kGlassInside[kCoarse * kCoarse * kCoarse], kGlassInsideMean[kCoarse * kCoarse];
 // Mean of fresnelBlend() over the facets that reflect to above the surface.
 extern const uint16_t kBlend[kCoarse * kCoarse * kCoarse];
+// Of Schlick's (1 - cos)^5; without z.
+extern const uint16_t kSchlick[kCoarse * kCoarse];
 
 }  // namespace wardmis::albedo

@@ -108,6 +108,15 @@ inline void addTransparent(int version, Rgb weight, Add&& add) {
   addLobe(version, l, add);
 }
 
+// Gives a lobe the light that it reflects more than once. Colours of passes are without it: in Cycles 3.4, which
+// follows light from facet to facet, as it is; later but for the darkening, which its closures' weights hold.
+template <class Look>
+inline Rgb addEnergy(int version, Look& look, const Compensation& c) {
+  look.compensation = version == 3 ? c.factor() : gray(c.scale);
+  return c.factor();
+}
+inline void addEnergy(int version, Lobe& l, const Compensation& c) { l.weight *= addEnergy<Lobe>(version, l, c); }
+
 // The color that light reflected more than once takes: since 4.0 as it is, also where it is brighter than white.
 inline Rgb compensated(int version, Rgb color) { return version == 3 ? clampedTo1(color) : color; }
 
@@ -127,7 +136,7 @@ inline void addGlossy(int version, Glossy distribution, Rgb weight, Rgb color, f
   if (distribution == Glossy::kMultiGgx) {
     l.masking = Masking::kCorrelated;
     if (version == 3) atLeastWalked3(l);
-    l.weight *= compensate(reflectionAlbedo(tableRoughness(l), cosThetaO), compensated(version, color)).factor();
+    addEnergy(version, l, compensate(reflectionAlbedo(tableRoughness(l), cosThetaO), compensated(version, color)));
   }
   addLobe(version, l, add);
 }
@@ -138,6 +147,7 @@ struct GlassLook {
   Masking masking = Masking::kCorrelated;
   Fresnel fresnel = Fresnel::kBlended;
   Rgb f0, reflectionTint, transmissionTint;
+  Rgb compensation{1, 1, 1};
   bool unseenFacets = true;  // not where Cycles follows light from facet to facet
   bool refractsUp = false;
 };
@@ -145,7 +155,9 @@ template <class Add>
 inline void addGlassLobe(int version, const GlassLook& look, Rgb weight, float alpha, float eta, Add&& add) {
   Lobe l = roughLobe(version, look.kind, weight * look.reflectionTint, alpha, alpha);
   l.masking = look.masking, l.fresnel = look.fresnel, l.f0 = look.f0, l.eta = eta;
-  l.through = weight * look.transmissionTint, l.unseenFacets = look.unseenFacets, l.refractsUp = look.refractsUp;
+  l.through = weight * look.transmissionTint, l.compensation = look.compensation;
+  l.paleColor = version == 3 && !look.unseenFacets;  // a closure of its own, which passes take for transmission
+  l.unseenFacets = look.unseenFacets, l.refractsUp = look.refractsUp;
   addLobe(version, l, add);
 }
 
@@ -158,7 +170,7 @@ inline void addGlass(int version, Glossy distribution, Rgb weight, Rgb color, fl
   if (distribution == Glossy::kMultiGgx) {
     if (version == 3) look.fresnel = Fresnel::kDielectric, look.unseenFacets = false;
     const float roughness = std::sqrt(alpha);
-    weight *= compensate(glassAlbedo(roughness, cosThetaO, eta), compensated(version, color)).factor();
+    weight *= addEnergy(version, look, compensate(glassAlbedo(roughness, cosThetaO, eta), compensated(version, color)));
   } else if (version == 3) {  // Fresnel of the mean surface, and of its facets total internal reflection alone
     const float f = fresnelDielectric(cosThetaO, eta);
     look.masking = Masking::kSeparable, look.fresnel = Fresnel::kNone, look.refractsUp = true;

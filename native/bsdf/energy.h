@@ -57,6 +57,10 @@ inline Albedo glassAlbedo(float roughness, float cosThetaO, float eta) {
 inline float blendAlbedo(float roughness, float cosThetaO, float eta) {
   return lookUp<albedo::kCoarse, 3>(albedo::kBlend, {roughness, cosThetaO, etaCoordinate(eta)});
 }
+// The same of Schlick's blend.
+inline float schlickAlbedo(float roughness, float cosThetaO) {
+  return lookUp<albedo::kCoarse, 2>(albedo::kSchlick, {roughness, cosThetaO});
+}
 
 // How much darker the whole is than for white facets, and what the single reflections are divided by. fss: mean
 // reflectance of a facet, or the tint of glass.

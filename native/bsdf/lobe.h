@@ -72,8 +72,9 @@ struct Lobe {
   bool refractsUp = false;    // samples go where facets refract to above the mean surface, too: strays()
   bool byFirstAxis = false;   // facets are drawn as if both axes had the first one's roughness
   bool defended = false;      // glass: neither side is drawn less often than once in nine times
-  bool paleColor = false;     // to passes of colour all facets reflect all, as in Cycles 3.4
+  bool paleColor = false;     // to passes, as in Cycles 3.4, its facets reflect all; of glass: transmit all
   Rgb weight{1, 1, 1}, through{1, 1, 1};
+  Rgb compensation{1, 1, 1};  // what both hold for light reflected more than once, and colours of passes do not
   float ax = 1, ay = 1;
   float eta = 1;  // of the side below over that above
   Rgb f0{1, 1, 1}, edge{0, 0, 0};

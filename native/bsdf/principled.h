@@ -44,7 +44,9 @@ inline Rgb addCoat(const Principled& p, Rgb weight, float cosThetaO, Add&& add) 
   Rgb albedo = gray(coat * fresnelDielectric(cosThetaO, eta));
   if (p.version >= 5) {
     const Compensation c = compensate(reflectionAlbedo(rough, cosThetaO), gray(fresnelMean(eta)));
-    l.weight *= c.factor();
+    addEnergy(p.version, l, c);
+    if (eta > 1)
+      l.fresnel = Fresnel::kBlended, l.f0 = gray(fresnelNormal(eta));  // the same, to passes of colour by table
     if (eta > 1) albedo = blendedAlbedo(gray(fresnelNormal(eta)), rough, cosThetaO, eta) * coat;
     albedo *= c.darkening;
   }
@@ -65,7 +67,7 @@ inline void addMetal(const Principled& p, Rgb weight, float ax, float ay, float 
   l.fresnel = Fresnel::kF82, l.f0 = clampedTo1(p.baseColor);
   l.edge = {f82Edge(l.f0.x, tint.x), f82Edge(l.f0.y, tint.y), f82Edge(l.f0.z, tint.z)};
   if (p.multiscatter)
-    l.weight *= compensate(reflectionAlbedo(tableRoughness(l), cosThetaO), f82Mean(l.f0, l.edge)).factor();
+    addEnergy(p.version, l, compensate(reflectionAlbedo(tableRoughness(l), cosThetaO), f82Mean(l.f0, l.edge)));
   addLobe(p.version, l, add);
 }
 
@@ -87,11 +89,11 @@ inline void addThinGlass(const Principled& p, Rgb weight, float ior, float cosTh
   channel(tint.z, color.z, reflects.z, passes.z);
   if (fresnelDielectric(cosThetaO, ior) >= 1) reflects = gray(1), passes = gray(0);
   Lobe l = roughLobe(p.version, LobeKind::kGgx, weight * reflects, alpha, alpha);
-  l.weight *= compensate(reflectionAlbedo(tableRoughness(l), cosThetaO), clampedTo1(tint)).factor();
+  addEnergy(p.version, l, compensate(reflectionAlbedo(tableRoughness(l), cosThetaO), clampedTo1(tint)));
   addLobe(p.version, l, add);
   const float wide = alpha * std::sqrt(std::max(0.0f, 3.4f * (ior - 1) * square(ior - 0.5f) / (square(ior) * ior)));
   l = roughLobe(p.version, LobeKind::kThinTransmission, weight * passes, wide, wide);
-  l.weight *= compensate(reflectionAlbedo(tableRoughness(l), cosThetaO), {1, 1, 1}).factor();
+  addEnergy(p.version, l, compensate(reflectionAlbedo(tableRoughness(l), cosThetaO), {1, 1, 1}));
   addLobe(p.version, l, add);
 }
 
@@ -100,14 +102,14 @@ inline void addTransmission(const Principled& p, Rgb weight, float ior, float co
   if (p.thinWall) return addThinGlass(p, weight, ior, cosThetaO, add);
   const float rough = std::clamp(p.roughness, 0.0f, 1.0f), eta = p.backfacing ? 1 / ior : ior;
   const Rgb base = clampedTo1(p.baseColor), tint{std::sqrt(base.x), std::sqrt(base.y), std::sqrt(base.z)};
-  const GlassLook look{.fresnel = Fresnel::kBlended,
-                       .f0 = clampedTo1(notNegative(p.specularTint) * fresnelNormal(ior)),
-                       .reflectionTint = gray(1),
-                       .transmissionTint = tint};
+  GlassLook look{.fresnel = Fresnel::kBlended,
+                 .f0 = clampedTo1(notNegative(p.specularTint) * fresnelNormal(ior)),
+                 .reflectionTint = gray(1),
+                 .transmissionTint = tint};
   // no light is refracted where the tint is black: the tables are then those of reflection
   if (p.multiscatter) {
     const Rgb fss = isBlack(tint) ? blendedMean(look.f0, eta) : tint;
-    weight *= compensate(glassAlbedo(rough, cosThetaO, eta), fss).factor();
+    weight *= addEnergy(p.version, look, compensate(glassAlbedo(rough, cosThetaO, eta), fss));
   }
   addGlassLobe(p.version, look, weight, rough * rough, eta, add);
 }
@@ -159,7 +161,8 @@ inline Rgb expand(const Principled& p, Rgb weight, const ViewCosines& cosines, A
     Rgb albedo = blendedAlbedo(l.f0, tableRoughness(l), cosines.base, eta);
     if (p.multiscatter) {
       const Compensation c = compensate(reflectionAlbedo(tableRoughness(l), cosines.base), blendedMean(l.f0, eta));
-      l.weight *= c.factor(), albedo *= c.darkening;
+      addEnergy(p.version, l, c);
+      albedo *= c.darkening;
     }
     addLobe(p.version, l, add);
     weight *= passed(albedo);

@@ -45,7 +45,7 @@ inline void addSpecular3(const Principled3& p, Rgb weight, float cosThetaO, Add&
   if (p.multiscatter && p.roughness > 0.075f) {
     l.masking = Masking::kCorrelated;
     atLeastWalked3(l);
-    l.weight *= compensate(reflectionAlbedo(tableRoughness(l), cosThetaO), blendedMean(l.f0, l.eta)).factor();
+    addEnergy(3, l, compensate(reflectionAlbedo(tableRoughness(l), cosThetaO), blendedMean(l.f0, l.eta)));
   }
   addLobe(3, l, add);
 }
@@ -57,14 +57,13 @@ inline void addGlass3(const Principled3& p, Rgb weight, float cosThetaO, Add&& a
   const Rgb tint = p.baseColor * p.specularTint + gray(1 - p.specularTint);
   if (p.multiscatter && p.roughness > kLeastCompensated3) {
     const Rgb base = clampedTo1(p.baseColor);
-    const GlassLook look{.fresnel = Fresnel::kTinted,
-                         .f0 = clampedTo1(tint),
-                         .reflectionTint = gray(1),
-                         .transmissionTint = base,
-                         .unseenFacets = false};
-    addGlassLobe(3, look, weight * compensate(glassAlbedo(p.roughness, cosThetaO, eta), base).factor(), alpha, eta,
-                 add);
-    return;
+    GlassLook look{.fresnel = Fresnel::kTinted,
+                   .f0 = clampedTo1(tint),
+                   .reflectionTint = gray(1),
+                   .transmissionTint = base,
+                   .unseenFacets = false};
+    weight *= addEnergy(3, look, compensate(glassAlbedo(p.roughness, cosThetaO, eta), base));
+    return addGlassLobe(3, look, weight, alpha, eta, add);
   }
   const float f = fresnelDielectric(cosThetaO, eta);
   Lobe l = roughLobe(3, LobeKind::kGgx, weight * f, alpha, alpha);
@@ -112,7 +111,8 @@ inline void expand(const Principled3& p, Rgb weight, float cosBase, float cosCoa
   if (p.clearcoat > kLeastWeight && cosCoat > 0) {
     const float alpha = p.clearcoatRoughness * p.clearcoatRoughness;
     Lobe l = roughLobe(3, LobeKind::kClearcoat, weight * (0.25f * p.clearcoat), alpha, alpha);
-    l.frame = kCoatFrame, l.fresnel = Fresnel::kBlended, l.paleColor = true, l.eta = 1.5f, l.f0 = gray(0.04f);
+    l.frame = kCoatFrame, l.fresnel = Fresnel::kBlended, l.eta = 1.5f, l.f0 = gray(0.04f);
+    l.paleColor = true, l.compensation = gray(0.25f * p.clearcoat);  // passes do not know how strong the coat is
     addLobe(3, l, add);
   }
 }

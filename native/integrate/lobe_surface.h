@@ -181,8 +181,8 @@ class LobeSurface {
     for (int i = 0; i < count_; ++i) sum += albedoOf(lobe_[i]);
     return sum;
   }
-  // Colours by component, for passes: as Cycles estimates albedos, by facets along the normal, and of dielectrics that
-  // blend to white by a table of the mean over facets.
+  // Colours by component, for passes: as Cycles estimates albedos, by facets along the normal, and where those blend to
+  // white by tables of the mean over facets.
   std::array<Rgb, kComponents> colors() const {
     std::array<Rgb, kComponents> sum{diffuse_, Rgb{0, 0, 0}, Rgb{0, 0, 0}};
     for (int i = 0; i < count_; ++i) {
@@ -191,15 +191,16 @@ class LobeSurface {
       near.through = {0, 0, 0};
       Rgb reflected = albedoAt(near, cosine(l.frame)), passed = albedoAt(l, cosine(l.frame)) - reflected;
       if (l.paleColor) {
-        reflected = l.weight;
-      } else if (l.fresnel == Fresnel::kBlended && wardmis::reflects(l.kind)) {
-        const float s = blendAlbedo(std::sqrt(std::sqrt(l.ax * l.ay)), cosine(l.frame), l.eta);
+        reflected = l.weight, passed = {0, 0, 0};
+      } else if (wardmis::reflects(l.kind) && (l.fresnel == Fresnel::kBlended || l.fresnel == Fresnel::kF82)) {
+        const float rough = std::sqrt(std::sqrt(l.ax * l.ay)), c = cosine(l.frame),
+                    s = l.fresnel == Fresnel::kF82 ? schlickAlbedo(rough, c) : blendAlbedo(rough, c, l.eta);
         const Rgb facets = l.f0 * (1 - s) + Rgb{s, s, s};
         reflected = l.weight * facets;
         if (isGlass(l.kind)) passed = l.through * (Rgb{1, 1, 1} - facets);
       }
-      sum[static_cast<size_t>(componentOf(l, wardmis::reflects(l.kind)))] += reflected;
-      sum[static_cast<size_t>(Component::kTransmission)] += passed;
+      sum[static_cast<size_t>(componentOf(l, wardmis::reflects(l.kind)))] += reflected / l.compensation;
+      sum[static_cast<size_t>(Component::kTransmission)] += passed / l.compensation;
     }
     return sum;
   }
@@ -336,7 +337,8 @@ class LobeSurface {
 
  private:
   static Component componentOf(const Lobe& l, bool ahead) {
-    return isMatte(l.kind) ? Component::kDiffuse : ahead ? Component::kGlossy : Component::kTransmission;
+    if (isMatte(l.kind)) return Component::kDiffuse;
+    return ahead && !(l.paleColor && isGlass(l.kind)) ? Component::kGlossy : Component::kTransmission;
   }
   template <class T>
   static Rgb single(Vec3<T> v) {

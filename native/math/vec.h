@@ -23,6 +23,7 @@ struct Vec3 {
   constexpr Vec3 operator*(Vec3 b) const { return {x * b.x, y * b.y, z * b.z}; }
   constexpr Vec3 operator*(T s) const { return {x * s, y * s, z * s}; }
   constexpr Vec3 operator/(T s) const { return *this * (T(1) / s); }
+  constexpr Vec3 operator/(Vec3 o) const { return {x / o.x, y / o.y, z / o.z}; }
   constexpr Vec3 operator-() const { return {-x, -y, -z}; }
   constexpr Vec3& operator+=(Vec3 b) { return *this = *this + b; }
   constexpr Vec3& operator*=(Vec3 b) { return *this = *this * b; }

@@ -20,7 +20,7 @@ sys.path[:0] = [str(Path(__file__).resolve().parent)]
 
 import scenes  # noqa: E402
 from stage import SCENES, Scene  # noqa: E402
-from wardmis import compat  # noqa: E402
+from wardmis import compat, passes  # noqa: E402
 
 SEEDS = 5
 # where Cycles' sequences go on as well distributed as they begin: it puts the very first sample into the middle of the pixel
@@ -43,8 +43,12 @@ def set_up(entry: Scene) -> None:
     cycles.sampling_pattern = "SOBOL" if bpy.app.version < (4, 0) else "TABULATED_SOBOL"
     wardmis.samples = entry.samples
     wardmis.integrator, wardmis.max_depth = "path" if entry.bounces else "direct", entry.bounces + 1
-    for owner, name, value in compat.cycles_samples(cycles, LATER_SAMPLES, entry.samples):
-        setattr(owner, name, value)
+    for owner, name, value in compat.cycles_samples(cycles, 0 if entry.passes else LATER_SAMPLES, entry.samples):
+        setattr(owner, name, value)  # passes of data are those of the very first sample
+    if entry.passes:
+        assign(render.image_settings, media_type="MULTI_LAYER_IMAGE", file_format="OPEN_EXR_MULTILAYER")
+        for flag, group in passes.BLENDERS.items():
+            setattr(scene.view_layers[0], flag, group in entry.passes)
 
 
 def assign(owner: Any, **settings: Any) -> None:
@@ -112,6 +116,7 @@ def main() -> None:
             traceback.print_exc()
             error = str(exception).strip() or repr(exception)
         limits = {name: getattr(entry, name) for name in ("within", "why", "block", "noise")}
+        limits["passes"] = [p.name for p in passes.PASSES if p.group in entry.passes] or ["Combined"]
         outcome.write_text(json.dumps({**limits, "error": error}))
 
 

@@ -76,6 +76,7 @@ def render(folder: Path, seed: int, pattern: str, part: int = 0, parts: int = 1)
             "why": "",
             "block": 1,
             "noise": 0,
+            "passes": ["Combined"],
             "error": f"Blender ended with exit code {done.returncode}",
         }
         (folder / f"{left[0]}.json").write_text(json.dumps(outcome))
@@ -87,14 +88,14 @@ def compared(folder: Path, name: str) -> Row:
     if row.fault:
         return row
     try:
-        first = blocks.deviation(folder, name, row.within, outcome["block"])
+        first = blocks.deviation(folder, name, row.within, outcome["block"], outcome["passes"])
         row.worst, row.noise, row.median, row.most_noise = first.worst, first.noise, first.median, first.most_noise
         both = first.beyond
         if both.any() and not (abs(first.z) > CERTAIN).any():
             again = folder / "again" / name  # several scenes are compared at a time
             again.mkdir(parents=True)
             render(again, AGAIN, f"={name}")
-            second = blocks.deviation(again, name, row.within, outcome["block"])
+            second = blocks.deviation(again, name, row.within, outcome["block"], outcome["passes"])
             both = first.beyond & second.beyond & (first.z * second.z > 0)
         if both.any():
             row.fault = f"{both.any(axis=-1).sum()} of {len(both)} blocks differ"

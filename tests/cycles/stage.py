@@ -42,6 +42,7 @@ class Scene:
     block: int = BLOCK  # pixels a side
     noise: float = NOISE
     seldom: bool = False  # others show nearly the same: left out where a sample is enough
+    passes: tuple[str, ...] = ()  # that are compared instead of Combined, as passes.BLENDERS calls them
 
 
 SCENES: dict[str, Scene] = {}
@@ -58,12 +59,13 @@ def scene(
     samples: int | None = None,
     block: int | None = None,
     noise: float = NOISE,
+    passes: tuple[str, ...] = (),
 ) -> Any:
     """Enters a function that builds into an empty Blender scene; it is named after it and its file. `bounces` are Cycles'; 0: direct light.
     `samples` and `block` are what the topic says in its SAMPLES and BLOCK, if it does; its SELDOM names the scenes that a sample leaves out."""
     if function is None:
         given = {"bounces": bounces, "within": within, "why": why, "since": since, "without": without}
-        return lambda f: scene(f, samples=samples, block=block, noise=noise, **given)
+        return lambda f: scene(f, samples=samples, block=block, noise=noise, passes=passes, **given)
     name = f"{function.__module__.rpartition('.')[2]}-{function.__name__}"
     assert name not in SCENES, f"two scenes are called {name}"
     assert within <= TOLERANCE or why, f"{name} may deviate by {within}: why?"
@@ -71,7 +73,7 @@ def scene(
     samples = samples or function.__globals__.get("SAMPLES", SAMPLES)
     block = block or function.__globals__.get("BLOCK", BLOCK)
     seldom = function.__name__ in function.__globals__.get("SELDOM", ())
-    SCENES[name] = Scene(name, function, bounces, within, why, since, without, samples, block, noise, seldom)
+    SCENES[name] = Scene(name, function, bounces, within, why, since, without, samples, block, noise, seldom, passes)
     return function
 
 

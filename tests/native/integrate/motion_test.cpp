@@ -115,6 +115,7 @@ TEST(DataPasses, AreOfWhatIsMetFirst) {
   object->index = 7;
   scene.instances[0].object = object;
   scene.materials[0].index = 3;
+  scene.meshes[0].parts[0].uvs = Array<Vec2f>::of({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
   scene.camera->left = scene.camera->bottom = -2, scene.camera->right = scene.camera->top = 2;
   scene.film.exposure = 2;
   RenderSettings s = settings(4);

@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Passes beside the picture: what the camera meets first, colours, and light apart."""
+
+import bpy
+from stage import add, ball, box, camera, diffuse, lamp, material, scene, sheet, sky
+
+DATA = "depth", "normal", "position", "uv", "object-index", "material-index"
+COLORS = "diffuse-color", "glossy-color", "transmission-color"
+FEW_PATHS = {"noise": 0.1, "why": "few paths make a pass of indirect light"}
+LIGHT = tuple(f"{c}-{part}" for c in ("diffuse", "glossy", "transmission") for part in ("direct", "indirect"))
+
+
+def shader(kind, settings=None, **inputs):
+    made, tree, output = material(kind)
+    tree.links.new(add(tree, kind, settings, **inputs).outputs[0], output.inputs["Surface"])
+    return made
+
+
+def room():
+    """A floor that fills the picture, below a lamp and a sky."""
+    sheet(diffuse((0.6, 0.5, 0.4)), size=12)
+    lamp("AREA", (1, -1, 5), 300, target=(0, 0, 0), shape="RECTANGLE", size=4, size_y=3)
+    sky((0.3, 0.4, 0.5))
+    camera((0.6, -5, 5))
+
+
+def with_indices(*things):
+    for index, thing in enumerate(things, 3):
+        thing.pass_index = index
+        thing.data.materials[0].pass_index = 10 - index
+
+
+def pane(alpha):
+    made = sheet(shader("BsdfPrincipled", Alpha=alpha), size=1)
+    made.location = 0, -0.5, 2
+    return made
+
+
+@scene(passes=DATA, samples=4, block=16)
+def of_what_is_met_first():
+    """A ball has no UVs."""
+    room()
+    with_indices(ball(diffuse()), box(diffuse(), (1.5, 0, 0.5), (0.5, 0.5, 0.5)))
+
+
+@scene(passes=DATA, samples=4, block=16)
+def behind_what_is_hardly_there():
+    room()
+    with_indices(ball(diffuse()), pane(0.0))
+
+
+@scene(passes=DATA, samples=4, block=16)
+def of_what_is_opaque_enough():
+    room()
+    with_indices(ball(diffuse()), pane(0.6))
+
+
+@scene(passes=("normal", "uv"), samples=256)
+def behind_what_is_not_opaque_enough():
+    """Position, depth and indices are of one sample, which the pane lets through by chance."""
+    room()
+    with_indices(ball(diffuse()), pane(0.3))
+
+
+@scene(passes=("depth", "normal", "uv"), samples=64)
+def of_another_threshold():
+    room()
+    with_indices(ball(diffuse()), pane(0.3))
+    bpy.context.view_layer.pass_alpha_threshold = 0.2
+
+
+def materials():
+    room()
+    for x, made in (
+        (-1.6, shader("BsdfPrincipled", Base_Color=(0.8, 0.3, 0.1, 1), Roughness=0.4)),
+        (0.0, shader("BsdfPrincipled", Base_Color=(0.9, 0.7, 0.3, 1), Metallic=1.0, Roughness=0.3)),
+        (1.6, shader("BsdfGlass", Color=(0.7, 0.9, 0.8, 1), Roughness=0.3)),
+    ):
+        ball(made, (x, 0, 0.8), 0.75)
+
+
+@scene(passes=COLORS)
+def colors():
+    materials()
+
+
+@scene(passes=COLORS)
+def colors_of_other_shaders():
+    room()
+    glossy = "BsdfGlossy" if bpy.app.version < (4, 0) else "BsdfAnisotropic"
+    for x, made in (
+        (-1.6, shader(glossy, Color=(0.8, 0.3, 0.1, 1), Roughness=0.4)),
+        (0.0, shader("BsdfTranslucent", Color=(0.9, 0.7, 0.3, 1))),
+        (1.6, shader("BsdfRefraction", Color=(0.7, 0.9, 0.8, 1), Roughness=0.3)),
+    ):
+        ball(made, (x, 0, 0.8), 0.75)
+
+
+def multiscatter(kind, **inputs):
+    return shader(kind, {"distribution": "MULTI_GGX"}, **inputs)
+
+
+@scene(passes=COLORS)
+def colors_of_multiscatter():
+    room()
+    glossy = "BsdfGlossy" if bpy.app.version < (4, 0) else "BsdfAnisotropic"
+    through = "Transmission" if bpy.app.version < (4, 0) else "Transmission_Weight"
+    for x, made in (
+        (-1.8, multiscatter(glossy, Color=(0.8, 0.3, 0.1, 1), Roughness=0.7)),
+        (-0.6, multiscatter("BsdfGlass", Color=(0.7, 0.9, 0.8, 1), Roughness=0.6)),
+        (0.6, multiscatter("BsdfPrincipled", Base_Color=(0.9, 0.7, 0.3, 1), Metallic=0.5, Roughness=0.8)),
+        (1.8, multiscatter("BsdfPrincipled", Base_Color=(0.5, 0.7, 0.3, 1), Roughness=0.8, **{through: 0.8})),
+    ):
+        ball(made, (x, 0, 0.6), 0.55)
+
+
+@scene(passes=COLORS)
+def colors_of_layers():
+    room()
+    old = bpy.app.version < (4, 0)
+    coat = {"Clearcoat": 1.0, "Clearcoat_Roughness": 0.4} if old else {"Coat_Weight": 1.0, "Coat_Roughness": 0.4}
+    sheen = {"Sheen": 1.0} if old else {"Sheen_Weight": 1.0}
+    for x, made in (
+        (-1.6, shader("BsdfPrincipled", Base_Color=(0.8, 0.3, 0.1, 1), Roughness=0.4, **coat)),
+        (0.0, shader("BsdfPrincipled", Base_Color=(0.1, 0.2, 0.3, 1), Roughness=0.6, **sheen)),
+        (1.6, shader("BsdfPrincipled", Base_Color=(0.7, 0.9, 0.8, 1), IOR=2.0, Alpha=0.7)),
+    ):
+        ball(made, (x, 0, 0.8), 0.75)
+
+
+def emitter():
+    box(shader("Emission", Color=(1, 0.5, 0.2, 1), Strength=2.0), (0, 1.6, 0.4), (0.4, 0.4, 0.4))
+
+
+@scene(passes=(*LIGHT[:4], "emission", "environment"), bounces=2, samples=256, block=16, **FEW_PATHS)
+def light():
+    room()
+    emitter()
+    ball(shader("BsdfPrincipled", Base_Color=(0.8, 0.3, 0.1, 1), Roughness=0.4), (-1.2, 0, 0.8), 0.75)
+    ball(shader("BsdfPrincipled", Base_Color=(0.9, 0.7, 0.3, 1), Metallic=1.0, Roughness=0.5), (1, 0, 0.8), 0.75)
+
+
+@scene(passes=LIGHT, bounces=3, samples=256, block=16, **FEW_PATHS)
+def light_that_passes():
+    """Of the sky alone: that of lamps through glass is too noisy to be compared."""
+    materials()
+    bpy.data.objects.remove(bpy.data.objects["Area"])
+    ball(shader("BsdfTranslucent"), (0, -1.5, 0.5), 0.4)
