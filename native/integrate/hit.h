@@ -164,10 +164,14 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
   const auto technique = [&](size_t t) { return dimension + Dimensions<K>::kTechnique + static_cast<uint32_t>(t); };
   const std::array<int, K> n =
       systematicCounts<K>(plan.fractions, plan.samples, visit.counts(dimension + Dimensions<K>::kSampleCounts));
+  const float matte = s.strength() > 0 ? s.diffuseStrength() / s.strength() : 1;
+  bool oneSided = true;  // no light goes through from behind
+  if constexpr (kGeneral) oneSided = !s.transmits();
+  const LightView view = world.emitters.view(x.position, oneSided ? x.geometric : Vec3f{0, 0, 0}, matte);
   Scratch<LightChoice, kMaxSamplesPerHit> lights;  // first of all, see Emitters::choose()
   for (int m = 0; m < n[kLight]; ++m)
     lights.make(m, [&] {
-      return world.emitters.choose(visit.point<ChoicePoint>(technique(kLight), static_cast<uint32_t>(m)));
+      return world.emitters.choose(view, visit.point<ChoicePoint>(technique(kLight), static_cast<uint32_t>(m)));
     });
 
   const Mixture<K> mixture(plan.fractions, plan.samples, plan.weights);
@@ -475,14 +479,14 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
         p[kLight] = e.pdf;
         addLight(kGeneral ? e.radiance * seenThrough : e.radiance, e.visibility);
       };
-      world.emitters.along(ray, tMax, escaped, static_cast<int>(plan.vertex), meet,
+      world.emitters.along(ray, tMax, escaped, static_cast<int>(plan.vertex), &view, meet,
                            skyAhead ? skies[k] : Environment::Place{});
     });
     if (!hit.valid()) continue;
     const Shape& shape = world.geometry.shapes[hit.shape];
     const Material& m = world.scene.materials[static_cast<size_t>(shape.material)];
     if (!isBlack(m.emission.value)) {
-      p[kLight] = world.emitters.trianglePdf(world.geometry.placements[hit.placement], hit, d, ray.path.time);
+      p[kLight] = world.emitters.trianglePdf(view, world.geometry.placements[hit.placement], hit, d, ray.path.time);
       Rgb radiance = interact<N, K>(world.scene, world.geometry, ray, hit).emission;
       if constexpr (kGeneral) radiance *= seenThrough;
       if (!isHidden(p[kLight])) addLight(radiance, world.geometry.placements[hit.placement].visibility);

@@ -76,7 +76,7 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
   Ray ray = camera;
   Noted noted{world, in.camera, camera, sample == 0, pixel, data};
   const auto along = [&](float tMax, bool escaped) {
-    world.emitters.along(ray, std::min(tMax, ray.tMax), escaped && !transparent, 0, [&](const EmitterHit& e) {
+    world.emitters.along(ray, std::min(tMax, ray.tMax), escaped && !transparent, 0, nullptr, [&](const EmitterHit& e) {
       sum += e.radiance * seenThrough;
       covered = true;
       if (data != nullptr) [[unlikely]]
@@ -85,14 +85,14 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
   };
   const Hit hit = trace<N, K>(world, ray, combine(pixelKey, ~sample), seenThrough, along, noted);
   if (data != nullptr && transparent && !hit.valid()) [[unlikely]]  // a hole for the picture, and there for its pass
-    world.emitters.along(ray, ray.tMin, true, 0, [&](const EmitterHit& e) {
+    world.emitters.along(ray, ray.tMin, true, 0, nullptr, [&](const EmitterHit& e) {
       if (e.sky) DataPixel::add(data->environment, e.radiance * seenThrough * exposure);
     });
   const Placement* const met = hit.valid() ? &world.geometry.placements[hit.placement] : nullptr;
   if (catcher != nullptr) [[unlikely]] {
     *catcher = {met != nullptr && met->shadowCatcher && !met->holdout, sum, seenThrough, {}};
     if (!transparent && (catcher->caught || met == nullptr))
-      world.emitters.along(ray, ray.tMin, true, 0, [&](const EmitterHit& e) {
+      world.emitters.along(ray, ray.tMin, true, 0, nullptr, [&](const EmitterHit& e) {
         if (e.sky) catcher->sky += e.radiance * seenThrough;
       });
     if (catcher->caught) {  // as Cycles has it

@@ -64,6 +64,9 @@ bool isFinite(Vec3<T> v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
+// Component by component: the corners of a box around both.
+constexpr Vec3f least(Vec3f a, Vec3f b) { return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)}; }
+constexpr Vec3f most(Vec3f a, Vec3f b) { return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}; }
 constexpr Rgb notNegative(Rgb c) { return {std::max(c.x, 0.0f), std::max(c.y, 0.0f), std::max(c.z, 0.0f)}; }
 // The amounts of its colours, whatever their signs.
 constexpr Rgb absolute(Rgb c) { return {c.x < 0 ? -c.x : c.x, c.y < 0 ? -c.y : c.y, c.z < 0 ? -c.z : c.z}; }

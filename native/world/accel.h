@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ray queries. The only place that knows Embree (3.13 and 4).
+// Ray queries. By Embree (3.13 and 4).
 #pragma once
 
 #include <cstdint>

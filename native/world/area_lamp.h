@@ -19,6 +19,7 @@ class AreaLamp {
   // Of the whole parallelogram |a|, |b| <= 1 that it is, or that is around it.
   Vec3f at(float a, float b) const { return center_ + halfX_ * a + halfY_ * b; }
   bool ellipse() const { return ellipse_; }
+  bool tilted() const { return tilted_; }  // it looks elsewhere than along its normal
   // The squared radius of a sphere about its centre in which it lies.
   float reach2() const {
     return std::max(dot(halfX_ + halfY_, halfX_ + halfY_), dot(halfX_ - halfY_, halfX_ - halfY_));

@@ -103,13 +103,58 @@ class TriangleLuminance {
   std::vector<double> means_;                      // luminance of each texture's image; < 0: not known yet
 };
 
+// Whether it keeps angles.
+bool isEven(const Affine& a) {
+  const float x = length(a.x), y = length(a.y), z = length(a.z), most = std::max({x, y, z});
+  const float askew = std::max({std::abs(dot(a.x, a.y)), std::abs(dot(a.y, a.z)), std::abs(dot(a.z, a.x))});
+  return std::min({x, y, z}) > 0.999f * most && askew < 1e-3f * most * most;
+}
+
+// As LightBounds has them: what is no number is nothing.
+float finiteOf(double w) { return std::isfinite(w) && w > 0 ? static_cast<float>(std::min(w, 1e30)) : 0; }
+
 }  // namespace
+
+LightBounds Emitters::boundsOf(const Lamp& lamp, const Light& light) {
+  LightBounds b;
+  b.lower = b.upper = lamp.center;
+  b.cosO = -1;
+  switch (lamp.kind) {
+    case Kind::kArea:
+      for (const Vec2f corner : {Vec2f{-1, -1}, {1, -1}, {-1, 1}, {1, 1}}) {
+        const Vec3f at = lamp.plane.at(corner.x, corner.y);
+        b.lower = least(b.lower, at), b.upper = most(b.upper, at);
+      }
+      b.axis = lamp.plane.normal(), b.cosO = 1;
+      b.cosE = lamp.plane.tilted() ? -1 : std::cos(std::min(0.5f * light.spread + 1e-3f, 0.5f * kPif));
+      break;
+    case Kind::kFacingDisk:
+    case Kind::kSphere: {
+      const Vec3f r{lamp.radius, lamp.radius, lamp.radius};
+      b.lower = b.lower - r, b.upper = b.upper + r;
+      break;
+    }
+    case Kind::kSunCone:
+    case Kind::kSunDisk:
+    case Kind::kDeltaSun:
+      b.distant = true;
+      b.axis = lamp.center, b.cosO = 1 - lamp.oneMinusCos;
+      break;
+    default:
+      break;
+  }
+  if (lamp.spot && isEven(light.toWorld)) {
+    b.axis = -normalize(light.toWorld.z);
+    b.cosO = lamp.cosHalf - 1e-4f, b.cosE = 0.9999f;
+  }
+  return b;
+}
 
 Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Environment>& environments,
                    bool catchersAlone)
     : scene_(scene), geometry_(geometry), environments_(environments) {
   const float crossSection = kPif * geometry.radius() * geometry.radius();
-  std::vector<double> power;
+  std::vector<LightBounds> bounds;
 
   for (const Light& light : scene.lights) {
     if (isBlack(light.emitted) || (catchersAlone && !light.onCatchers)) continue;
@@ -120,13 +165,13 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Env
     l.maxBounces = light.maxBounces;
     l.center = light.toWorld.t;
     const double intensity = double(strength(light.emitted));  // times an area: beyond float for the strongest
-    double w = 0;
+    double w = intensity;                                      // as LightBounds::intensity
     switch (light.type) {
       case LightType::kArea: {
         l.kind = Kind::kArea;
         l.plane = AreaLamp(light);
         if (!(l.plane.area() > 0)) continue;
-        w = intensity * l.plane.area() * kPif;
+        w = intensity * double(l.plane.area());
         break;
       }
       case LightType::kPoint:
@@ -134,14 +179,12 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Env
         l.radius = light.radius;
         l.kind = !(light.radius > 0) ? Kind::kDeltaPoint : light.facing ? Kind::kFacingDisk : Kind::kSphere;
         if (light.radius > 0) l.emitted = light.emitted / (kPif * light.radius * light.radius);
-        w = intensity * 4 * kPif;
         if (light.type == LightType::kSpot) {
           l.spot = true;
           l.cosine = light.cosine;
           l.cosHalf = std::cos(0.5f * light.angle);
           l.blend = light.blend;
           l.toLocal = light.toWorld;
-          w *= 0.5 * (1 - l.cosHalf);
         }
         break;
       }
@@ -158,13 +201,12 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Env
             l.radius = std::sqrt(std::max(0.0f, 1 - cosHalf * cosHalf)) / cosHalf;
             l.area = kPif * l.radius * l.radius;
             l.emitted = light.emitted * (all / l.area);
-            w = intensity * double(all) * crossSection;
+            w = intensity * double(all);
             break;
           }
           const float sinHalf = std::sin(half);
           l.emitted = light.emitted / (kPif * sinHalf * sinHalf);
         }
-        w = intensity * crossSection;
         break;
     }
     if (light.program) {
@@ -181,7 +223,11 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Env
       finite_.push_back({index, l.center, l.kind == Kind::kArea ? l.plane.reach2() : l.radius * l.radius});
     }
     lamps_.push_back(l);
-    power.push_back(std::max(w, 0.0));
+    bounds.push_back(boundsOf(l, light));
+    LightBounds& b = bounds.back();
+    b.intensity = finiteOf(w);
+    const double directions = light.type == LightType::kArea ? 1 : l.spot ? 2 * (1 - double(l.cosHalf)) : 4;
+    b.power = finiteOf(w * (b.distant ? double(crossSection) : directions * kPi<double>));
   }
 
   for (uint32_t i = 0; i < environments.size(); ++i) {
@@ -195,7 +241,11 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Env
     l.maxBounces = environment.world().maxBounces;
     lamps_.push_back(l);
     sky_ |= (l.visibility & kSeenBySurfaces) != 0;
-    power.push_back(environment.sampled() ? environment.integral() * crossSection : 0.0);
+    LightBounds all;  // facing anywhere, on the average
+    all.distant = true, all.cosO = -1;
+    all.intensity = environment.sampled() ? finiteOf(double(environment.integral()) / 4) : 0;
+    all.power = finiteOf(4 * double(all.intensity) * double(crossSection));
+    bounds.push_back(all);
     shared_ |= environment.sampled();
     if (environment.tabulated()) skyAhead_ = &environment;
   }
@@ -220,15 +270,25 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Env
         strength.push_back(static_cast<float>(luminances.of(placement, shape, t)));
       for (uint32_t t = 0; t < shape.triangles; ++t) {
         const auto [a, b, c] = Geometry::corners(placement, shape, t);
-        const double w = 2 * kPif * 0.5 * length(cross(b - a, c - a)) * double(strength[t]);
+        const Vec3f n = cross(b - a, c - a);
+        LightBounds of;
+        of.lower = least(least(a, b), c), of.upper = most(most(a, b), c);
+        of.axis = safeNormalize(n);
+        of.twoSided = true;
+        of.intensity = finiteOf(0.5 * double(length(n)) * double(strength[t]));
+        of.power = 2 * kPif * of.intensity;
         emissive_.push_back({p, s, t});
-        power.push_back(std::isfinite(w) && w > 0 ? w : 0.0);
+        bounds.push_back(of);
       }
     }
   }
   triangles_ = emissive_.size();
   shared_ |= triangles_ > 0;
-  table_ = AliasTable(power);
+  tree_ = LightTree(bounds);
+  if (finite_.size() <= kFew) return;
+  std::vector<SphereAccel::Sphere> spheres;
+  for (const Finite& l : finite_) spheres.push_back({l.center, std::sqrt(l.radius2)});
+  spheres_ = SphereAccel(spheres);
 }
 
 // Radiance (finite lights) or intensity (delta lights) leaving in unit direction d.
@@ -299,11 +359,11 @@ double Emitters::meanFactor(const Lamp& lamp, float distance) const {
   return std::max({mean, kLeastOfMost * most, mean > 0 ? 0 : kLeast});
 }
 
-LightChoice Emitters::choose(ChoicePoint u) const {
+LightChoice Emitters::choose(const LightView& view, ChoicePoint u) const {
   LightChoice c;
   c.point = u;
-  c.emitter = table_.sample(c.point.x);
-  c.probability = table_.probability(c.emitter);
+  const LightTree::Choice drawn = tree_.choose(view, c.point.x);
+  c.emitter = drawn.light, c.probability = drawn.probability;
   if (c.emitter < lamps_.size() && lamps_[c.emitter].kind == Kind::kEnvironment)
     environments_[lamps_[c.emitter].environment].prefetch(c.point);
   return c;
@@ -319,6 +379,7 @@ void Emitters::look(LightSample& s, Vec3f from, int bounces) const {
 
 LightSample Emitters::sample(Vec3f from, const LightChoice& choice, int bounces, float time) const {
   LightSample s;
+  if (!(choice.probability > 0)) return s;
   const uint32_t index = choice.emitter;
   const Vec2f u{toCoordinate(choice.point.x), choice.point.y};
   if (index >= lamps_.size()) {
@@ -441,8 +502,9 @@ LightSample Emitters::sample(Vec3f from, const LightChoice& choice, int bounces,
   return s;
 }
 
-bool Emitters::meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax, int bounces,
+bool Emitters::meets(uint32_t index, const Ray& ray, float tMax, int bounces, const LightView* view,
                      const Environment::Place& ahead, EmitterHit& hit) const {
+  const Lamp& lamp = lamps_[index];
   const Vec3f d = ray.direction;
   // where two lobes share a technique, both get what any of its rays meets: who sees it is the estimator's to say
   const int seers = ray.kind == kSeenByCamera ? kSeenByCamera : kSeenBySurfaces;
@@ -516,19 +578,21 @@ bool Emitters::meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax,
       return false;
   }
   if (lamp.light != nullptr) hit.radiance *= factor(lamp, ray.origin, d, t, bounces);
-  hit.pdf = pdf > 0 ? pdf * probability(index) : 0;
+  hit.pdf = pdf > 0 && view != nullptr ? pdf * tree_.probability(*view, index) : 0;
   hit.visibility = lamp.visibility;
   hit.sky = lamp.kind == Kind::kEnvironment;
   return true;
 }
 
-float Emitters::trianglePdf(const Placement& p, const Hit& hit, Vec3f direction, float time) const {
+float Emitters::trianglePdf(const LightView& view, const Placement& p, const Hit& hit, Vec3f direction,
+                            float time) const {
   const Shape& shape = geometry_.shapes[hit.shape];
   if (shape.strands != nullptr) return 0;
   const auto [a, b, c] = Geometry::corners(p, shape, hit.triangle, time);
   const float cosArea = std::abs(dot(direction, cross(b - a, c - a))) * 0.5f;
   if (!(cosArea > 0)) return 0;
-  return probability(lamps_.size() + p.firstEmitter + shape.emitterOffset + hit.triangle) * hit.t * hit.t / cosArea;
+  const auto emitter = static_cast<uint32_t>(lamps_.size()) + p.firstEmitter + shape.emitterOffset + hit.triangle;
+  return tree_.probability(view, emitter) * hit.t * hit.t / cosArea;
 }
 
 }  // namespace wardmis

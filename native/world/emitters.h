@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Everything that emits, as one list that the light technique picks from in proportion to power: light objects, the
-// images of skies, emissive triangles. Each emitter is an integral of its own: a direction that meets several is
-// weighted for each by itself.
+// Everything that emits, as one list that the light technique picks from by what each may send to a point: light
+// objects, the images of skies, emissive triangles. Each emitter is an integral of its own: a direction that meets
+// several is weighted for each by itself.
 #pragma once
 
 #include <limits>
 
 #include "world/accel.h"
-#include "world/alias.h"
 #include "world/area_lamp.h"
 #include "world/environment.h"
+#include "world/light_tree.h"
+#include "world/sphere_accel.h"
 
 namespace wardmis {
 
@@ -26,6 +27,8 @@ struct LightSample {
   PrimitiveId on;          // the triangle, which is not an occluder itself
   uint8_t visibility = kSeenByAll;
 };
+
+using LightView = LightTree::View;
 
 // An emitter that was drawn, and what is left of the random numbers.
 struct LightChoice {
@@ -48,7 +51,7 @@ class Emitters {
   Emitters(const Scene& scene, Geometry& geometry, const std::vector<Environment>& environments,
            bool catchersAlone = false);
 
-  bool any() const { return !table_.empty(); }
+  bool any() const { return !tree_.empty(); }
   // Emitters that the surface's techniques meet too, and emitters that they cannot (delta lights, lights without
   // shadows).
   bool anyShared() const { return shared_; }
@@ -60,8 +63,10 @@ class Emitters {
   uint64_t emissiveTriangles() const { return triangles_; }
 
   // A sample is made in three steps, each of which asks for the memory that the next one reads: work between them hides
-  // the wait. bounces: by which the path has come to `from`; time: of the path.
-  LightChoice choose(ChoicePoint u) const;
+  // the wait. bounces: by which the path has come to `from`; time: of the path. A choice of probability 0 is none.
+  // matte: as LightTree has it.
+  LightView view(Vec3f from, Vec3f facing, float matte) const { return tree_.from(from, facing, matte); }
+  LightChoice choose(const LightView& view, ChoicePoint u) const;
   LightSample sample(Vec3f from, const LightChoice& choice, int bounces = 0, float time = kMiddle) const;
   void look(LightSample& sample, Vec3f from, int bounces = 0) const;
   // Whether there is a sky that is looked up in memory, and where a ray of this direction meets it, if it does: for
@@ -71,12 +76,14 @@ class Emitters {
 
   // Calls f(EmitterHit) for each light object that the ray meets before tMax, and, where the ray goes on for ever
   // (escaped), for the environment and suns. bounces: by which the path has come to the ray's origin; 0 from the
-  // camera.
+  // camera. view: of the point from which light samples are drawn; null: there are none, and all densities are 0.
   template <class F>
-  void along(const Ray& ray, float tMax, bool escaped, int bounces, F&& f, const Environment::Place& ahead = {}) const;
+  void along(const Ray& ray, float tMax, bool escaped, int bounces, const LightView* view, F&& f,
+             const Environment::Place& ahead = {}) const;
 
   // The emissive triangle that was hit.
-  float trianglePdf(const Placement& p, const Hit& hit, Vec3f direction, float time = kMiddle) const;
+  float trianglePdf(const LightView& view, const Placement& p, const Hit& hit, Vec3f direction,
+                    float time = kMiddle) const;
 
  private:
   enum class Kind : uint8_t { kArea, kFacingDisk, kSphere, kDeltaPoint, kDeltaSun, kSunCone, kSunDisk, kEnvironment };
@@ -97,16 +104,15 @@ class Emitters {
     uint32_t environment = 0;      // its index
     const Light* light = nullptr;  // where it has a program
   };
-  float probability(size_t emitter) const {
-    return table_.empty() ? 0 : table_.probability(static_cast<uint32_t>(emitter));
-  }
+  // Where a lamp is and where it shines; its intensity is still to be set.
+  static LightBounds boundsOf(const Lamp& lamp, const Light& light);
   static Rgb profile(const Lamp& lamp, Vec3f fromLight);  // radiance or intensity in a direction leaving the light
   // What the lamp's program makes of its light in the direction d from a point, t away.
   Rgb factor(const Lamp& lamp, Vec3f from, Vec3f d, float t, int bounces) const;
   // The mean of that over directions, by the light that goes there.
   double meanFactor(const Lamp& lamp, float distance) const;
-  bool meets(const Lamp& lamp, size_t index, const Ray& ray, float tMax, int bounces, const Environment::Place& ahead,
-             EmitterHit& hit) const;
+  bool meets(uint32_t index, const Ray& ray, float tMax, int bounces, const LightView* view,
+             const Environment::Place& ahead, EmitterHit& hit) const;
 
   const Scene& scene_;
   const Geometry& geometry_;
@@ -129,25 +135,37 @@ class Emitters {
       return d2 - along * along > radius2 + kRoundings * d2;
     }
   };
-  AliasTable table_;  // over lamps, then emissive triangles
+  LightTree tree_;  // of lamps, then emissive triangles
   std::vector<Finite> finite_;
-  std::vector<uint32_t> infinite_;  // indices of suns and skies
+  static constexpr size_t kFew = 16;  // of so many each is asked
+  SphereAccel spheres_;               // of finite_, where there are more
+  std::vector<uint32_t> infinite_;    // indices of suns and skies
   const Environment* skyAhead_ = nullptr;
   bool shared_ = false, exclusive_ = false, sky_ = false, strands_ = false;
   uint64_t triangles_ = 0;
 };
 
 template <class F>
-void Emitters::along(const Ray& ray, float tMax, bool escaped, int bounces, F&& f,
+void Emitters::along(const Ray& ray, float tMax, bool escaped, int bounces, const LightView* view, F&& f,
                      const Environment::Place& ahead) const {
   EmitterHit hit;
-  for (const Finite& l : finite_) {
-    if (l.isPassedBy(ray)) continue;
-    if (bounces <= lamps_[l.lamp].maxBounces && meets(lamps_[l.lamp], l.lamp, ray, tMax, bounces, ahead, hit)) f(hit);
+  const auto ask = [&](const Finite& l) {
+    if (l.isPassedBy(ray)) return;
+    if (bounces <= lamps_[l.lamp].maxBounces && meets(l.lamp, ray, tMax, bounces, view, ahead, hit)) f(hit);
+  };
+  if (finite_.size() <= kFew) {
+    for (const Finite& l : finite_) ask(l);
+  } else {
+    SphereAccel::Found found;
+    spheres_.find(ray.origin, ray.direction, tMax, found);
+    if (found.tooMany)
+      for (const Finite& l : finite_) ask(l);
+    else
+      for (size_t i = 0; i < found.count; ++i) ask(finite_[found.index[i]]);
   }
   if (!escaped) return;
   for (uint32_t i : infinite_)
-    if (bounces <= lamps_[i].maxBounces && meets(lamps_[i], i, ray, tMax, bounces, ahead, hit)) f(hit);
+    if (bounces <= lamps_[i].maxBounces && meets(i, ray, tMax, bounces, view, ahead, hit)) f(hit);
 }
 
 }  // namespace wardmis

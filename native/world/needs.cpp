@@ -78,7 +78,7 @@ std::vector<std::string> leftOut(const Scene& scene, uint32_t n, const Emitters&
 
 void requireMemoryFor(const Scene& scene) {
   // measured, with Embree's and what building takes for a moment
-  constexpr uint64_t kPerObject = 600, kPerEmitter = 64;
+  constexpr uint64_t kPerObject = 600, kPerEmitter = 128;
   std::vector<uint64_t> emissive(scene.meshes.size(), 0);  // triangles, by mesh
   for (size_t m = 0; m < scene.meshes.size(); ++m)
     for (const MeshPart& part : scene.meshes[m].parts)

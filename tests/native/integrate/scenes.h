@@ -77,7 +77,7 @@ inline void lookFrom(Scene& scene, float theta, float half, int resolution) {
   c.left = c.bottom = -half;
   c.right = c.top = half;
   scene.camera = c;
-  scene.film = {resolution, resolution, 0, 0, resolution, resolution, FilterType::kBox, 1, 1, false, false, {}};
+  scene.film = {resolution, resolution, 0, 0, resolution, resolution, FilterType::kBox, 1, 1, false, false, 0.5f, {}};
 }
 
 // The scene's sky; there is one from the first call on.

@@ -43,12 +43,13 @@ TEST(Emitters, RaysMeetWhatSamplesAimAt) {
           const auto u = random.square();
           const Vec3f from = at + normalize(Vec3f{static_cast<float>(u.x) - 0.5f, 0.4f, -1}) * (away * size);
           const auto v = random.square();
-          const LightSample s = emitters.sample(from, emitters.choose({v.x, static_cast<float>(v.y)}));
+          const LightView view = emitters.view(from, {0, 0, 0}, 1);
+          const LightSample s = emitters.sample(from, emitters.choose(view, {v.x, static_cast<float>(v.y)}));
           if (!(s.pdf > 0) || isBlack(s.radiance)) continue;
           Ray ray;
           ray.origin = from, ray.direction = s.direction, ray.kind = kSeenByDiffuse;
           ++aimed;
-          emitters.along(ray, 2 * s.distance, false, 0, [&](const EmitterHit& hit) {
+          emitters.along(ray, 2 * s.distance, false, 0, &view, [&](const EmitterHit& hit) {
             ++met;
             EXPECT_NEAR(hit.pdf / s.pdf, 1, 0.02) << size << " " << away;
           });

@@ -40,7 +40,7 @@ TEST(Needs, EmissiveInstancesMustFitIntoMemory) {
   const std::string said = refusal(instances(100'000, 1'000'000, 1));
   EXPECT_TRUE(
       said.starts_with("many.glb: 100000 objects with 100000000000 emissive triangles, instances counted, "
-                       "would need 6400.1 GB of memory, and "))
+                       "would need 12800.1 GB of memory, and "))
       << said;
   EXPECT_NE(said.find("place emissive meshes fewer times"), std::string::npos) << said;
   EXPECT_EQ(refusal(instances(100'000, 1'000'000, 0)), "");  // without emission nothing is listed
