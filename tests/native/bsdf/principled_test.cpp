@@ -137,7 +137,9 @@ TEST(Principled3, OfOneAxisIsNoMirror) {
     const Vec wo{0.6, 0, 0.8}, wi{-0.8, 0, 0.6};
     const LobeValue<double> v = evaluate(lobes[0], wi, wo);
     const double f = reflectance(lobes[0], 0.5 * length(wi + wo)).x;
-    if (!multiscatter) EXPECT_NEAR(v.fCos.x / (v.pdf * f), 1, 1e-6);
+    if (!multiscatter) {
+      EXPECT_NEAR(v.fCos.x / (v.pdf * f), 1, 1e-6);
+    }
   }
   p.roughness = 0.1f, p.anisotropic = 0;
   EXPECT_FALSE(has(lobesOf(p, 0.7f), LobeKind::kMirror));

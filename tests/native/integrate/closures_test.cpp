@@ -467,9 +467,9 @@ TEST(DataPasses, AreOfTheFirstThatIsOpaqueEnough) {
   for (const FilmBuffer film = renderScene(scene, s); size_t i : {0, 20, 63}) {
     EXPECT_EQ(film.pixels[i].depth, 49);
     EXPECT_EQ(film.data[i].materialIndex, 5);
-    EXPECT_NEAR(film.pixels[i].normal.z, film.samples, 1e-4);
+    EXPECT_NEAR(film.pixels[i].normal[2], film.samples, 1e-4);
     EXPECT_EQ(film.data[i].position.z, 1);
-    EXPECT_EQ(film.data[i].uv.z, 0) << "there are none";
+    EXPECT_EQ(film.data[i].uv[2], 0) << "there are none";
   }
   scene.film.alphaThreshold = 0.7f;
   const FilmBuffer film = renderScene(scene, s);
