@@ -153,7 +153,7 @@ class Files(CommandTest):
         for options, says, more in (
             (
                 ("65536x65536",),
-                ("65536 x 65536 pixels with 'auto' take 910.5 GB", "are free", "lower the resolution"),
+                ("65536 x 65536 pixels with 'auto' take 1151.1 GB", "are free", "lower the resolution"),
                 {},
             ),
             (
