@@ -158,7 +158,7 @@ class Files(CommandTest):
             ),
             (
                 ("3000x2000",),
-                ("1.3 GB of memory (212 bytes each)", "0."),
+                ("1.6 GB of memory (268 bytes each)", "0."),
                 {"preexec_fn": lambda: resource.setrlimit(*limit)},
             ),
         ):
