@@ -581,7 +581,7 @@ def principled_sheen():
     ]
 
 
-@balls(bounces=2)
+@balls(constant={"samples": 24}, bounces=2)
 def principled_coat():
     return [
         *(named(coat=c, Roughness=0.7) for c in (0.5, 1)),
