@@ -164,11 +164,11 @@ Closure Materials::closure(const Json& json) {
               "export the scene again");
   c.type = static_cast<ClosureType>(k);
   const ClosureInfo& i = info(c.type);
-  readColor(json, "weight", c.weight);
+  readColor(json, "weight", c.weight, true);
   readScalar(json, "rotation", c.rotation);
   for (const ClosureInput& input : i.colors) {
     c.colors.push_back({{input.value, input.value, input.value}, {}});
-    readColor(json, input.name, c.colors.back());
+    readColor(json, input.name, c.colors.back(), true);  // below 0, too, as programs may make them
   }
   for (const ClosureInput& input : i.scalars) {
     c.scalars.push_back({input.value, {}});

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Light that takes light away: negative strengths of lamps, materials and worlds, over a sky that leaves something to take."""
 
+import bpy
 import numpy as np
 from stage import (
     BLUE,
@@ -152,3 +153,26 @@ def image_world():
     shown = add(tree, "TexEnvironment", {"image": texels(16, 8, -0.5)})
     tree.links.new(shown.outputs["Color"], tree.nodes["Background"].inputs["Color"])
     camera(target=(0, 0, 2))
+
+
+def of_negative_color(kind, name):
+    made, tree, output = material(kind)
+    below = add(tree, "CombineXYZ", X=0.6, Y=0.4, Z=-0.3)
+    node = add(tree, kind)
+    tree.links.new(below.outputs[0], node.inputs[name])
+    tree.links.new(node.outputs[0], output.inputs["Surface"])
+    return made
+
+
+@scene(bounces=2)
+def colors_of_nodes():
+    """Constants that nodes make, which no slider would."""
+    things()
+    glossy = "BsdfGlossy" if bpy.app.version < (4, 0) else "BsdfAnisotropic"
+    for x, made in (
+        (-2.0, of_negative_color("BsdfPrincipled", "Base Color")),
+        (-0.4, of_negative_color(glossy, "Color")),
+        (1.2, of_negative_color("BsdfTranslucent", "Color")),
+        (2.4, of_negative_color("BsdfGlass", "Color")),
+    ):
+        ball(made, (x, -1.6, 0.6), 0.55)

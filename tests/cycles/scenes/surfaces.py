@@ -295,7 +295,7 @@ def gloss_rough_along_one_axis():
     ]
 
 
-@balls(bounces=2, samples=32)
+@balls(bounces=2, samples=48)
 def brighter_than_white():
     """Colours above 1: what is reflected more than once takes them as they are (since 4.0), a metal of the Principled shader is white at most."""
     bright = rgba(0.5, 1.7, 1)
