@@ -87,6 +87,11 @@ std::vector<PassInfo> choosePasses(const std::string& list, TechniqueMask techni
                   "material-index, emission, environment, and diffuse-, glossy-, transmission- with direct, indirect, "
                   "color");
   }
+  for (size_t i = 0; i < chosen.size(); ++i)
+    for (size_t k = 0; k < i; ++k)
+      if (chosen[i].name == chosen[k].name)
+        throw Error(ExitCode::kUsage, fmt::format("--passes: two passes are called '{}'", chosen[i].name),
+                    "name each pass once, and give each a name of its own");
   return chosen;
 }
 

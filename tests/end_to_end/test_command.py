@@ -72,6 +72,8 @@ class Usage(CommandTest):
             ((*render, "--resolution", "0x10"), "WIDTHxHEIGHT"),
             ((*render, "--passes", "combined,beauty"), "beauty"),
             ((*render, "--passes", "combined=Beauty"), "cannot be a name"),
+            ((*render, "--passes", "combined,diffuse-direct=Combined"), "two passes are called 'Combined'"),
+            ((*render, "--passes", "uv,uv"), "two passes are called 'UV'"),
             (("render", self.scene(), "-o", self.folder / "out.png"), "ends in .exr"),
             ((*render, "--preview", self.folder / "preview"), "ends in .exr"),
             (("render", self.scene(), "-o", ""), "--output: is empty"),
