@@ -20,7 +20,11 @@ FLOORS = [
     {"math"},
 ]
 # Libraries that one place alone may know.
-LIBRARIES = {"embree": ["native/world/accel"], "CLI": ["native/cli/"], "OpenImageIO": ["native/oiio/"]}
+LIBRARIES = {
+    "embree": ["native/world/accel", "native/world/sphere_accel"],
+    "CLI": ["native/cli/"],
+    "OpenImageIO": ["native/oiio/"],
+}
 LIBRARIES |= {library: ["native/codecs/"] for library in ("draco", "meshoptimizer", "webp")}
 
 # Python: Blender's modules, and where they may be imported.
