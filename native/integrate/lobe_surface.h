@@ -344,6 +344,7 @@ class LobeSurface {
 
  private:
   static Component componentOf(const Lobe& l, bool ahead) {
+    if (l.kind == LobeKind::kVelvet) return Component::kGlossy;  // to Cycles 3.4's passes; its rays are diffuse
     if (isMatte(l.kind)) return Component::kDiffuse;
     return ahead && !(l.paleColor && isGlass(l.kind)) ? Component::kGlossy : Component::kTransmission;
   }

@@ -667,7 +667,8 @@ class Converge(CommandTest):
         shares = self.of(report, "equal")["allocation"]
         self.assertAlmostEqual(shares["lobe"] + shares["cosine"] + shares["light"], 1, places=6)
         self.assertIsNone(shares["clamped"])
-        self.assertEqual(shares["starved"], 0)
+        # a pixel of an edge, of which the survey met another surface than these 16 samples
+        self.assertLess(shares["starved"], 0.002)
         for technique in report["techniques"]:  # a cost may be measured as 0 on a busy machine
             product = technique["variance"] * technique["ns_per_sample"]
             self.assertAlmostEqual(technique["variance_x_cost"], product, delta=1e-9 * product)

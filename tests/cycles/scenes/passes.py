@@ -96,6 +96,14 @@ def colors_of_other_shaders():
         ball(made, (x, 0, 0.8), 0.75)
 
 
+@scene(passes=COLORS, block=16)
+def of_cloth():
+    """Velvet counts as gloss in 3.4, sheen as what is diffuse."""
+    room()
+    ball(shader("BsdfVelvet" if bpy.app.version < (4, 0) else "BsdfSheen"), (-1, 0, 0.8), 0.75)
+    ball(shader("BsdfPrincipled", **{"Sheen" if bpy.app.version < (4, 0) else "Sheen_Weight": 1.0}), (1, 0, 0.8), 0.75)
+
+
 def multiscatter(kind, **inputs):
     return shader(kind, {"distribution": "MULTI_GGX"}, **inputs)
 
