@@ -360,12 +360,6 @@ LobeValue<T> evaluate(const Lobe& l, Vec3<T> wi, Vec3<T> wo) {
   }
 }
 
-// Whether sampleDensities() are not both the density of evaluate(), or there are strays().
-inline bool countsOtherwise(const Lobe& l) {
-  return l.kind == LobeKind::kClearcoat || l.kind == LobeKind::kAshikhminShirley || l.refractsUp ||
-         isOfBeckmann(l.kind);
-}
-
 template <class T>
 struct SampleDensities {
   T pdf, counted;

@@ -107,7 +107,6 @@ class LobeSurface {
   }
   // Shares the lobes out among the techniques, by their classes or in their order; those that are too many share one.
   void finish(const LobeNumbers& numbers) {
-    countsOtherwise_ = false;
     strength_.fill(0), delta_.fill(false), reflection_.fill(0), transmission_.fill(0);
     strength_[kCosine] = luminance(diffuse_);
     std::array<float, kMostLobes> strength;
@@ -115,7 +114,6 @@ class LobeSurface {
     LobeCounts of{};
     for (int i = 0; i < count_; ++i) {
       strength[i] = strengthOf(lobe_[i]);
-      countsOtherwise_ = countsOtherwise_ || wardmis::countsOtherwise(lobe_[i]);
       if (byCosine(lobe_[i])) continue;
       ++(isDelta(lobe_[i].kind) ? sharp : rough);
       ++of[static_cast<size_t>(classOf(lobe_[i].kind))];
@@ -257,8 +255,7 @@ class LobeSurface {
       const bool seen = v.pdf > T(0);
       if (!seen) v = unseen(l, w, view);
       if (!(v.pdf > T(0))) continue;
-      SampleDensities<T> d{seen ? v.pdf : T(0), v.pdf};
-      if (seen && countsOtherwise_) d = sampleDensities(l, w, view, v.pdf);
+      const SampleDensities<T> d = seen ? sampleDensities(l, w, view, v.pdf) : SampleDensities<T>{T(0), v.pdf};
       const float strength = slot_[i] == kCosine ? 0 : strength_[slot_[i]] * share_[i],
                   density = strength * static_cast<float>(d.counted), reached = left(static_cast<float>(w.z));
       const Rgb value = single(v.fCos) * reached;
@@ -280,16 +277,15 @@ class LobeSurface {
         f[slot_[i]] += value * shadow.bySurface;
         if (slot_[i] != kCosine) p[slot_[i]] += share_[i] * static_cast<float>(v.pdf);
         drawn += strength * static_cast<float>(d.pdf), counted += density;
-        if (countsOtherwise_)
-          strays(l, w, view, [&](const Stray<T>& s) {
-            const float pdf = strength * static_cast<float>(s.pdf);
-            if (lit.strays == lit.kMostStrays || !(pdf > std::numeric_limits<float>::min())) return;
-            own[lit.strays] = {single(s.fCos) * reached, pdf, strength * static_cast<float>(s.counted),
-                               s.alone ? parts : -1};
-            lit.stray[lit.strays++].slot = slot_[i];
-          });
+        strays(l, w, view, [&](const Stray<T>& s) {
+          const float pdf = strength * static_cast<float>(s.pdf);
+          if (lit.strays == lit.kMostStrays || !(pdf > std::numeric_limits<float>::min())) return;
+          own[lit.strays] = {single(s.fCos) * reached, pdf, strength * static_cast<float>(s.counted),
+                             s.alone ? parts : -1};
+          lit.stray[lit.strays++].slot = slot_[i];
+        });
       }
-      if (countsOtherwise_) part[parts++] = {value, density};
+      part[parts++] = {value, density};
       lit.density += density;
       (above == ahead ? lit.same : lit.other)[slot_[i]] += value * shadow.byLight;
       lit.any = lit.any || shadow.byLight != (sampled ? shadow.bySurface : 0);
@@ -399,8 +395,7 @@ class LobeSurface {
   Vec3f wo_;
   int count_, frames_;
   bool mixes_, defended_;
-  bool countsOtherwise_;  // of any lobe
-  float least_;           // strength of any lobe
+  float least_;  // strength of any lobe
   std::array<Lobe, kMostLobes> lobe_;
   std::array<uint8_t, kMostLobes> slot_;
   std::array<float, kMostLobes> share_;
