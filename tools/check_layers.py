@@ -21,7 +21,7 @@ FLOORS = [
 ]
 # Libraries that one place alone may know.
 LIBRARIES = {
-    "embree": ["native/world/accel", "native/world/sphere_accel"],
+    "embree": ["native/world/embree"],
     "CLI": ["native/cli/"],
     "OpenImageIO": ["native/oiio/"],
 }

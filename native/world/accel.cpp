@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "world/accel.h"
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -16,67 +11,12 @@
 
 #include "math/error.h"
 #include "math/random.h"
+#include "world/embree.h"
 
 namespace wardmis {
 namespace {
 
-// Embree reads rays through these; the visibility kind travels in ray.flags for the filter, the ray itself beside its
-// context.
-#if RTC_VERSION_MAJOR >= 4
-struct Query : RTCRayQueryContext {
-  const Ray* ray;
-  void* user;
-};
-// filter: called for whatever is met, besides the geometries' own; user: for it.
-void trace(RTCScene scene, RTCRayHit& rh, const Ray& ray, RTCFilterFunctionN filter = nullptr, void* user = nullptr) {
-  Query query;
-  rtcInitRayQueryContext(&query);
-  query.ray = &ray, query.user = user;
-  RTCIntersectArguments args;
-  rtcInitIntersectArguments(&args);
-  args.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
-  if (filter != nullptr)
-    args.filter = filter,
-    args.flags = static_cast<RTCRayQueryFlags>(args.flags | RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER);
-  args.context = &query;
-  rtcIntersect1(scene, &rh, &args);
-}
-void shadow(RTCScene scene, RTCRay& r, const Ray& ray, RTCFilterFunctionN filter = nullptr, void* user = nullptr) {
-  Query query;
-  rtcInitRayQueryContext(&query);
-  query.ray = &ray, query.user = user;
-  RTCOccludedArguments args;
-  rtcInitOccludedArguments(&args);
-  args.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
-  if (filter != nullptr)
-    args.filter = filter,
-    args.flags = static_cast<RTCRayQueryFlags>(args.flags | RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER);
-  args.context = &query;
-  rtcOccluded1(scene, &r, &args);
-}
-#else
-struct Query : RTCIntersectContext {
-  const Ray* ray;
-  void* user;
-};
-Query queryOf(const Ray& ray, RTCFilterFunctionN filter, void* user) {
-  Query query;
-  rtcInitIntersectContext(&query);
-  query.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-  query.filter = filter;
-  query.ray = &ray, query.user = user;
-  return query;
-}
-// filter: called for whatever is met, besides the geometries' own; user: for it.
-void trace(RTCScene scene, RTCRayHit& rh, const Ray& ray, RTCFilterFunctionN filter = nullptr, void* user = nullptr) {
-  Query query = queryOf(ray, filter, user);
-  rtcIntersect1(scene, &query, &rh);
-}
-void shadow(RTCScene scene, RTCRay& r, const Ray& ray, RTCFilterFunctionN filter = nullptr, void* user = nullptr) {
-  Query query = queryOf(ray, filter, user);
-  rtcOccluded1(scene, &query, &r);
-}
-#endif
+using embree::Query;
 
 void setRay(RTCRay& out, const Ray& r) {
   out.org_x = r.origin.x, out.org_y = r.origin.y, out.org_z = r.origin.z;
@@ -235,7 +175,7 @@ struct Accel::Impl {
         RTCRayHit rh;
         setRay(rh.ray, ray);
         rh.hit.geomID = rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-        trace(scene, rh, ray, filterSearch, &search);
+        embree::trace(scene, rh, ray, filterSearch, &search);
       }
       if (search.found.empty()) return;
       std::vector<PrimitiveId>& to = all.local();
@@ -378,7 +318,7 @@ Hit Accel::intersect(const Ray& ray) const {
   setRay(rh.ray, ray);
   rh.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rh.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  trace(impl_->scene, rh, ray, impl_->filterFor(ray), impl_.get());
+  embree::trace(impl_->scene, rh, ray, impl_->filterFor(ray), impl_.get());
   Hit h;
   if (rh.hit.geomID == RTC_INVALID_GEOMETRY_ID) return h;
   h.t = rh.ray.tfar;
@@ -400,7 +340,7 @@ Hit Accel::intersect(const Ray& ray) const {
 bool Accel::occluded(const Ray& ray) const {
   RTCRay r;
   setRay(r, ray);
-  shadow(impl_->scene, r, ray, impl_->filterFor(ray), impl_.get());
+  embree::shadow(impl_->scene, r, ray, impl_->filterFor(ray), impl_.get());
   return r.tfar < 0;
 }
 

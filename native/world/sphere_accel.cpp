@@ -1,50 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "world/sphere_accel.h"
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
-
 #include <algorithm>
 #include <cmath>
 
 #include "math/error.h"
+#include "world/embree.h"
 
 namespace wardmis {
 namespace {
 
-#if RTC_VERSION_MAJOR >= 4
-struct Query : RTCRayQueryContext {
-  SphereAccel::Found* found;
-};
-void trace(RTCScene scene, RTCRayHit& rh, SphereAccel::Found& found) {
-  Query query;
-  rtcInitRayQueryContext(&query);
-  query.found = &found;
-  RTCIntersectArguments args;
-  rtcInitIntersectArguments(&args);
-  args.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
-  args.context = &query;
-  rtcIntersect1(scene, &rh, &args);
-}
-#else
-struct Query : RTCIntersectContext {
-  SphereAccel::Found* found;
-};
-void trace(RTCScene scene, RTCRayHit& rh, SphereAccel::Found& found) {
-  Query query;
-  rtcInitIntersectContext(&query);
-  query.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-  query.found = &found;
-  rtcIntersect1(scene, &query, &rh);
-}
-#endif
-
 // Notes whatever box a ray comes through, and lets it go on.
 void note(const RTCIntersectFunctionNArguments* args) {
-  SphereAccel::Found& found = *static_cast<Query*>(args->context)->found;
+  SphereAccel::Found& found = *static_cast<SphereAccel::Found*>(static_cast<embree::Query*>(args->context)->user);
   if (found.count < found.kMost)
     found.index[found.count++] = args->primID;
   else
@@ -107,7 +75,7 @@ void SphereAccel::find(Vec3f origin, Vec3f direction, float tMax, Found& found) 
   rh.ray.tfar = tMax;
   rh.ray.mask = ~0u;
   rh.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  trace(impl_->scene, rh, found);
+  embree::trace(impl_->scene, rh, {}, nullptr, &found);
   // the same order, whatever instructions the processor has
   std::sort(found.index.begin(), found.index.begin() + static_cast<std::ptrdiff_t>(found.count));
 }

@@ -132,11 +132,10 @@ TEST(ProgramRender, LightPathTellsRaysApart) {
   }
 }
 
-// A normal of the program: a sun from above lights a plane as if it were tilted.
-TEST(ProgramRender, NormalsTurnTheSurface) {
+// A white plane that a sun from above makes as bright as 1.
+Scene underASun() {
   Scene scene;
-  Material m = ward({1, 1, 1}, {0, 0, 0}, 0.1f, WardVariant::kWardGmd);
-  scene.materials = {m};
+  scene.materials = {ward({1, 1, 1}, {0, 0, 0}, 0.1f, WardVariant::kWardGmd)};
   addPlane(scene, 1, 0);
   Light sun;
   sun.type = LightType::kSun;
@@ -144,6 +143,12 @@ TEST(ProgramRender, NormalsTurnTheSurface) {
   sun.toWorld = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}};
   scene.lights = {sun};
   lookFrom(scene, 0, 0.9f, 4);
+  return scene;
+}
+
+// A normal of the program: a sun from above lights a plane as if it were tilted.
+TEST(ProgramRender, NormalsTurnTheSurface) {
+  Scene scene = underASun();
   EXPECT_NEAR(measure(renderScene(scene, settings(4))).mean, 1, 1e-5);
   setProgram(scene.materials[0], {{{"op", "normal-map-world"}, {"in", {{0.8, 0.5, 0.9}, 1}}}}, {0});
   scene.materials[0].normal = 0;
@@ -165,16 +170,8 @@ TEST(ProgramRender, NormalsTurnTheSurface) {
 
 // A bent normal is that of every closure that has none of its own, and of what is computed after it, in both forms.
 TEST(ProgramRender, NormalsAreBent) {
-  Scene scene;
-  scene.materials = {ward({1, 1, 1}, {0, 0, 0}, 0.1f, WardVariant::kWardGmd)};
-  addPlane(scene, 1, 0);
-  Light sun;
-  sun.type = LightType::kSun;
-  sun.emitted = {kPi<float>, kPi<float>, kPi<float>};
-  sun.toWorld = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}};
-  scene.lights = {sun};
+  Scene scene = underASun();
   scene.zUp = true;
-  lookFrom(scene, 0, 0.9f, 4);
   Material& m = scene.materials[0];
   const auto mean = [&] { return measure(renderScene(scene, settings(4))).mean; };
   const double turned = 0.8;

@@ -4,16 +4,12 @@
 
 #include <gtest/gtest.h>
 
-#include "math/random.h"
+#include "random_points.h"
 
 namespace wardmis {
 namespace {
 
-Vec3f inBox(Stream& random, float size) {
-  const auto a = random.square(), b = random.square();
-  return {size * (static_cast<float>(a.x) - 0.5f), size * (static_cast<float>(a.y) - 0.5f),
-          size * (static_cast<float>(b.x) - 0.5f)};
-}
+using test::inBox;
 Vec3f direction(Stream& random) { return normalize(inBox(random, 1)); }
 
 // Lamps of all kinds, and more distant ones than are entries of their own.

@@ -5,16 +5,12 @@
 
 #include <algorithm>
 
-#include "math/random.h"
+#include "random_points.h"
 
 namespace wardmis {
 namespace {
 
-Vec3f inBox(Stream& random, float size) {
-  const auto a = random.square(), b = random.square();
-  return {size * (static_cast<float>(a.x) - 0.5f), size * (static_cast<float>(a.y) - 0.5f),
-          size * (static_cast<float>(b.x) - 0.5f)};
-}
+using test::inBox;
 
 // Far from the origin, too, where floats are coarse.
 TEST(SphereAccel, FindsAllThatARayPassesThrough) {
