@@ -24,12 +24,12 @@ class Judged(unittest.TestCase):
         """Of images whose pixels scatter by `noise`; fixed random numbers."""
         random = np.random.default_rng(1)
 
-        def images(_folder, _name, engine):
+        def images(_folder, _name, engine, _pass):
             stack = 1 + noise * random.standard_normal((5, *SIZE)) + (deviation if engine == "wardmis" else 0)
             stack[..., 3] = 1
             return stack
 
-        limits = {"within": 0.005, "why": "", "block": block, "noise": bound, "error": ""}
+        limits = {"within": 0.005, "why": "", "block": block, "noise": bound, "passes": ["Combined"], "error": ""}
         with tempfile.TemporaryDirectory() as folder, mock.patch.object(blocks, "images", images):
             Path(folder, "x.json").write_text(json.dumps(limits))
             with mock.patch.object(run, "render"):  # again
