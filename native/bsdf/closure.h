@@ -21,6 +21,9 @@ inline Rgb clampedTo1(Rgb c) {
 // Roughness that the tables of albedos are read at.
 inline float tableRoughness(const Lobe& l) { return std::sqrt(std::sqrt(l.ax * l.ay)); }
 
+// Cycles makes some facets no smoother.
+inline void atLeastRough(Lobe& l) { l.ax = std::max(l.ax, 1e-4f), l.ay = std::max(l.ay, 1e-4f); }
+
 // Hands on a lobe that gives something; rough ones below Cycles' threshold as perfectly smooth.
 template <class Add>
 inline void addLobe(int version, Lobe l, Add&& add) {
@@ -31,7 +34,7 @@ inline void addLobe(int version, Lobe l, Add&& add) {
     // which asks both axes together, and takes the one mirror's direction from facets that may be rough along one
     if (l.byFirstAxis) l.ay = l.ax, l.byFirstAxis = false;
     smooth = std::max(l.ax, l.ay) <= 1e-3f;
-    if (!smooth) l.masking = Masking::kOfView, l.ax = std::max(l.ax, 1e-4f), l.ay = std::max(l.ay, 1e-4f);
+    if (!smooth) l.masking = Masking::kOfView, atLeastRough(l);
   }
   const bool straight = smooth || std::abs(l.eta - 1) < 1e-4f;
   if (straight) l.unseenFacets = l.refractsUp = false;
@@ -120,9 +123,6 @@ inline void addEnergy(int version, Lobe& l, const Compensation& c) { l.weight *=
 // The color that light reflected more than once takes: since 4.0 as it is, also where it is brighter than white.
 inline Rgb compensated(int version, Rgb color) { return version == 3 ? clampedTo1(color) : color; }
 
-// Of a lobe that Cycles 3.4 follows light from facet to facet for.
-inline void atLeastWalked3(Lobe& l) { l.ax = std::max(l.ax, 1e-4f), l.ay = std::max(l.ay, 1e-4f); }
-
 // Glossy: color decides over multiple reflections alone; weight contains it, too.
 template <class Add>
 inline void addGlossy(int version, Glossy distribution, Rgb weight, Rgb color, float ax, float ay, float cosThetaO,
@@ -131,11 +131,11 @@ inline void addGlossy(int version, Glossy distribution, Rgb weight, Rgb color, f
                         : distribution == Glossy::kAshikhminShirley ? LobeKind::kAshikhminShirley
                                                                     : LobeKind::kGgx;
   Lobe l = roughLobe(version, kind, weight, ax, ay);
-  if (kind == LobeKind::kAshikhminShirley) l.ax = std::max(l.ax, 1e-4f), l.ay = std::max(l.ay, 1e-4f);
+  if (kind == LobeKind::kAshikhminShirley) atLeastRough(l);
   l.byFirstAxis = version == 3 && kind == LobeKind::kBeckmann && ax != ay;
   if (distribution == Glossy::kMultiGgx) {
     l.masking = Masking::kCorrelated;
-    if (version == 3) atLeastWalked3(l);
+    if (version == 3) atLeastRough(l);
     addEnergy(version, l, compensate(reflectionAlbedo(tableRoughness(l), cosThetaO), compensated(version, color)));
   }
   addLobe(version, l, add);

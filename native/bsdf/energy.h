@@ -53,6 +53,8 @@ inline Albedo glassAlbedo(float roughness, float cosThetaO, float eta) {
   return {lookUp<albedo::kCoarse, 3>(inside ? albedo::kGlassInside : albedo::kGlass, {roughness, cosThetaO, z}),
           lookUp<albedo::kCoarse, 2>(inside ? albedo::kGlassInsideMean : albedo::kGlassMean, {roughness, z})};
 }
+// A reflectance that blends from F0 to white.
+inline Rgb whitened(Rgb f0, float blend) { return f0 * (1 - blend) + Rgb{blend, blend, blend}; }
 // Mean blend from F0 to white over the facets that a view sees.
 inline float blendAlbedo(float roughness, float cosThetaO, float eta) {
   return lookUp<albedo::kCoarse, 3>(albedo::kBlend, {roughness, cosThetaO, etaCoordinate(eta)});

@@ -31,8 +31,7 @@ inline float passed(Rgb layer) { return std::clamp(1 - maxComponent(layer), 0.0f
 
 // Reflectance of a blend from f0 to white that Cycles takes a rough layer to have.
 inline Rgb blendedAlbedo(Rgb f0, float roughness, float cosThetaO, float eta) {
-  const float s = blendAlbedo(roughness, cosThetaO, eta);
-  return f0 * (1 - s) + gray(s);
+  return whitened(f0, blendAlbedo(roughness, cosThetaO, eta));
 }
 
 template <class Add>

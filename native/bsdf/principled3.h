@@ -44,7 +44,7 @@ inline void addSpecular3(const Principled3& p, Rgb weight, float cosThetaO, Add&
                     p.baseColor * p.metallic);
   if (p.multiscatter && p.roughness > 0.075f) {
     l.masking = Masking::kCorrelated;
-    atLeastWalked3(l);
+    atLeastRough(l);
     addEnergy(3, l, compensate(reflectionAlbedo(tableRoughness(l), cosThetaO), blendedMean(l.f0, l.eta)));
   }
   addLobe(3, l, add);

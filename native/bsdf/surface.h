@@ -23,7 +23,7 @@ struct Surface {
   static constexpr Rgb transparent{0, 0, 0};  // what goes straight through
   bool reflects() const { return hasDiffuse() || hasSpecular(); }
   Rgb albedo() const { return diffuse + specular; }
-  std::array<Rgb, kComponents> colors() const { return {diffuse, specular, Rgb{0, 0, 0}}; }
+  PerComponent colors() const { return {diffuse, specular, Rgb{0, 0, 0}}; }
 
   // The lobes by number: the first is Ward's.
   bool hasLobe(size_t lobe) const { return lobe == 0 && hasSpecular(); }

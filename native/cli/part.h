@@ -35,6 +35,7 @@ struct PartHeader {
   nlohmann::json whole;        // what all parts of one image have alike
   nlohmann::json statistics;   // of the render that made it
   nlohmann::json pilotCounts;  // of these, those of a pilot that is not among its samples
+  std::string words;           // hash of its sums
 
   uint32_t of() const;  // samples that the image has
   ImageDescription description() const;

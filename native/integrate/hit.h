@@ -127,7 +127,6 @@ struct HitMoments {
 
 // The light of one camera sample by the components of what it meets first.
 struct LightSplit {
-  using PerComponent = std::array<Rgb, kComponents>;
   PerComponent direct{};
   Scratch<PerComponent, kMaxSamplesPerHit> share;  // of the light of each path that goes on; 9 kB, not to be cleared
 
@@ -242,14 +241,21 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
   const auto note = [&](size_t integrand, Rgb f, const Fractions<K>& p, TechniqueMask used, int set) {
     if (record != nullptr) record->add(integrand, std::abs(luminance(f)), p, mixture.n, used, set);
   };
-  const auto componentOf = [&](size_t integrand, [[maybe_unused]] bool ahead) {
-    if constexpr (kGeneral) return s.component(integrand, ahead);
-    return integrand == kCosine ? Component::kDiffuse : Component::kGlossy;
+  LightSplit* const passes = record != nullptr ? record->light : nullptr;
+  FByComponent<K> byComponent;  // of the sample at hand, where there are passes of light
+  // Calls to(component, part) for what an integrand's value is made of.
+  const auto eachComponent = [&](size_t integrand, Rgb value, auto&& to) {
+    if constexpr (kGeneral) {
+      for (size_t c = 0; c < kComponents; ++c)
+        to(static_cast<Component>(c), value * byComponent.part(integrand, c));
+    } else {
+      to(integrand == kCosine ? Component::kDiffuse : Component::kGlossy, value);
+    }
   };
-  // f times `by` is what each integrand adds to the estimate.
-  const auto noteLight = [&](const PerIntegrand<Rgb, K>& f, Rgb by, bool ahead) {
-    if (record != nullptr && record->light != nullptr)
-      for (size_t i = 0; i < f.size(); ++i) record->light->add(componentOf(i, ahead), f[i] * by);
+  // What an integrand adds to the estimate.
+  const auto noteLight = [&](size_t integrand, Rgb value) {
+    if (passes != nullptr) [[unlikely]]
+      eachComponent(integrand, value, [&](Component c, Rgb part) { passes->add(c, part); });
   };
 
   // One sample's share of an emitter's light, by MIS over the techniques of each integral. f: of each integrand, f cos.
@@ -287,7 +293,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       const float scale = mixture.scale(t, p, used);
       sum += value * scale;
       note(0, value, p, used, set);
-      noteLight(f, radiance * scale, ahead);
+      for (size_t i = 0; i < f.size(); ++i) noteLight(i, f[i] * radiance * scale);
       return;
     }
     for (size_t i = 0; i < f.size(); ++i) {
@@ -297,7 +303,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       const float scale = mixture.scale(t, p, used);
       sum += value * scale;
       note(i, value, p, used, set);
-      if (record != nullptr && record->light != nullptr) record->light->add(componentOf(i, ahead), value * scale);
+      noteLight(i, value * scale);
     }
     if (record != nullptr && record->candidates != nullptr && has(among, kLight)) {
       Fractions<K> found = p;
@@ -337,8 +343,12 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       if (sharp) {
         f[t] = s.weight(from[k], wi, wo);
         p[t] = 1;
+        if (passes != nullptr) [[unlikely]]
+          byComponent.clear(), byComponent.add(t, s.component(from[k]), f[t]);
       } else {
-        s.evaluate(wi, wo, ahead, f, p, lit);
+        if (passes != nullptr) [[unlikely]]
+          byComponent.clear();
+        s.evaluate(wi, wo, ahead, f, p, lit, passes != nullptr ? &byComponent : nullptr);
         if (t != kLight && !(p[t] > 0)) continue;
         for (size_t l = 0; l < kLobes; ++l)
           counts.underflows += present[l] && p[l] < std::numeric_limits<float>::min() ? 1 : 0;
@@ -433,7 +443,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
         for (Rgb& value : each) value = value * radiance;
         sum += total(each) / (l.pdf * mixture.n[kLight]);
         const float scale = 1 / (l.pdf * mixture.n[kLight]);
-        noteLight(each, Rgb{scale, scale, scale}, ahead);
+        for (size_t i = 0; i < each.size(); ++i) noteLight(i, each[i] * scale);
         // which of the lights is drawn is noise, too, and no other technique covers them
         Fractions<K> alone{};
         alone[kLight] = l.pdf;
@@ -500,17 +510,15 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
       Rgb w = (split ? f[t] : total(f)) * scale;
       if constexpr (kGeneral) w *= seenThrough;
       const Bounce bounce = !ahead ? kTransmissionBounce : diffuse ? kDiffuseBounce : kGlossyBounce;
-      if (record != nullptr && record->light != nullptr && strength(w) > 0) {
-        record->light->share.set(continuations.count, {});
-        LightSplit::PerComponent& share = record->light->share[continuations.count];
+      if (passes != nullptr && strength(w) > 0) {
+        passes->share.set(continuations.count, {});
+        PerComponent& share = passes->share[continuations.count];
         const Rgb all = total(f);
         const auto part = [](float a, float b) { return b > 0 ? a / b : 0; };
         for (size_t i = 0; i < f.size(); ++i) {
-          Rgb& to = share[static_cast<size_t>(componentOf(i, ahead))];
-          if (split)
-            to += i == t ? Rgb{1, 1, 1} : Rgb{0, 0, 0};
-          else
-            to += Rgb{part(f[i].x, all.x), part(f[i].y, all.y), part(f[i].z, all.z)};
+          if (split && i != t) continue;
+          const Rgb of = split ? Rgb{1, 1, 1} : Rgb{part(f[i].x, all.x), part(f[i].y, all.y), part(f[i].z, all.z)};
+          eachComponent(i, of, [&](Component c, Rgb its) { share[static_cast<size_t>(c)] += its; });
         }
       }
       if (strength(w) > 0)

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "bsdf/bump_shadow.h"
+#include "bsdf/closure.h"
 #include "bsdf/energy.h"
 #include "bsdf/lobe.h"
 #include "bsdf/shadow_terminator.h"
@@ -56,6 +57,21 @@ struct LitOtherwise {
     for (int k = 0; k < strays; ++k)
       sum[stray[k].slot] += stray[k].f * (byLight - share(stray[k].density, light, strength));
     return sum;
+  }
+};
+
+// f cos of each technique's lobes by what they are to passes of light: a technique that several share may be more than
+// one thing.
+template <size_t K>
+struct FByComponent {
+  std::array<PerComponent, K - 1> of;
+  void clear() { of.fill({}); }
+  void add(size_t slot, Component c, Rgb f) { of[slot][static_cast<size_t>(c)] += f; }
+  // The part of a technique's value that is component c's, by channel; they sum to 1 where there is any.
+  Rgb part(size_t slot, size_t c) const {
+    const Rgb sum = of[slot][0] + of[slot][1] + of[slot][2], &one = of[slot][c];
+    const auto ratio = [](float a, float b) { return b != 0 ? a / b : 0; };
+    return {ratio(one.x, sum.x), ratio(one.y, sum.y), ratio(one.z, sum.z)};
   }
 };
 
@@ -184,10 +200,21 @@ class LobeSurface {
     for (int i = 0; i < count_; ++i) sum += albedoOf(lobe_[i]);
     return sum;
   }
+  // The mean of the lobes' normals, unit, in world space, which Cycles shows in passes.
+  Vec3f normal() const {
+    const auto mean = [](Rgb w) { return std::abs(w.x + w.y + w.z) / 3; };
+    Vec3f sum = frame_[0].z * (mean(diffuse_) + mean(transparent));
+    for (int i = 0; i < count_; ++i) {
+      const Lobe& l = lobe_[i];
+      sum += frame_[l.frame].z * mean((isGlass(l.kind) ? l.weight + l.through : l.weight) / l.compensation);
+    }
+    const float length2 = dot(sum, sum);
+    return length2 > 0 ? sum / std::sqrt(length2) : frame_[0].z;
+  }
   // Colours by component, for passes: as Cycles estimates albedos, by facets along the normal, and where those blend to
   // white by tables of the mean over facets.
-  std::array<Rgb, kComponents> colors() const {
-    std::array<Rgb, kComponents> sum{diffuse_, Rgb{0, 0, 0}, Rgb{0, 0, 0}};
+  PerComponent colors() const {
+    PerComponent sum{diffuse_, Rgb{0, 0, 0}, Rgb{0, 0, 0}};
     for (int i = 0; i < count_; ++i) {
       const Lobe& l = lobe_[i];
       Lobe near = l;
@@ -196,9 +223,9 @@ class LobeSurface {
       if (l.paleColor) {
         reflected = l.weight, passed = {0, 0, 0};
       } else if (wardmis::reflects(l.kind) && (l.fresnel == Fresnel::kBlended || l.fresnel == Fresnel::kF82)) {
-        const float rough = std::sqrt(std::sqrt(l.ax * l.ay)), c = cosine(l.frame),
-                    s = l.fresnel == Fresnel::kF82 ? schlickAlbedo(rough, c) : blendAlbedo(rough, c, l.eta);
-        const Rgb facets = l.f0 * (1 - s) + Rgb{s, s, s};
+        const float rough = tableRoughness(l), c = cosine(l.frame);
+        const Rgb facets = whitened(
+            l.f0, l.fresnel == Fresnel::kF82 ? schlickAlbedo(rough, c) : blendAlbedo(rough, c, l.eta));
         reflected = l.weight * facets;
         if (isGlass(l.kind)) passed = l.through * (Rgb{1, 1, 1} - facets);
       }
@@ -207,14 +234,6 @@ class LobeSurface {
     }
     return sum;
   }
-  // What the lobes of a technique are on the viewer's side (ahead) or on the other: where there are several, the last.
-  Component component(size_t slot, bool ahead) const {
-    Component found = slot == kCosine ? Component::kDiffuse : ahead ? Component::kGlossy : Component::kTransmission;
-    for (int i = 0; i < count_; ++i)
-      if (slot_[i] == slot && (ahead ? wardmis::reflects(lobe_[i].kind) : wardmis::transmits(lobe_[i].kind)))
-        found = componentOf(lobe_[i], ahead);
-    return found;
-  }
   // Whether the rounding of float directions would show, as Surface has it.
   bool needsDouble(float cosThetaO) const {
     return std::any_of(lobe_.begin(), lobe_.begin() + count_,
@@ -222,18 +241,20 @@ class LobeSurface {
   }
 
   // f cos of each technique's lobes and their densities at a direction wi, both in frame 0; ahead: it leaves on the
-  // side of the viewer. Sharp lobes are zero.
+  // side of the viewer. Sharp lobes are zero. by: null, or where f cos is told by component.
   template <class T>
   void evaluate(Vec3<T> wi, Vec3<T> wo, bool ahead, std::array<Rgb, K - 1>& f, Fractions<K>& p,
-                LitOtherwise<K>& lit) const {
+                LitOtherwise<K>& lit, FByComponent<K>* by = nullptr) const {
     struct {
       Rgb f;
       float density;  // as Cycles counts it, times the strength
+      Component component;
     } part[kMostLobes + 1];
     struct {
       Rgb f;
       float pdf, counted;  // times the strength
       int without;         // the part that is not asked there, or none
+      Component component;
     } own[LitOtherwise<K>::kMostStrays];
     int parts = 0;
     const float cosine = std::max(static_cast<float>(wi.z), 0.0f) * (1 / kPi<float>);
@@ -242,7 +263,8 @@ class LobeSurface {
     lit.same[kCosine] = f[kCosine];
     lit.density = strength_[kCosine] * cosine;
     lit.any = !ahead && hasDiffuse() && cosine > 0;
-    part[parts++] = {f[kCosine] + lit.other[kCosine], lit.density};
+    part[parts++] = {f[kCosine] + lit.other[kCosine], lit.density, Component::kDiffuse};
+    if (by != nullptr) by->add(kCosine, Component::kDiffuse, part[0].f);
     float drawn = ahead ? lit.density : 0, counted = drawn;  // of samples that leave there, and as Cycles has it
     for (int i = 0; i < count_; ++i) {
       const Lobe& l = lobe_[i];
@@ -263,13 +285,15 @@ class LobeSurface {
                                                     : bumpShadow(bump_[l.frame], l.kind, static_cast<float>(wi.z),
                                                                  ownCosine_[l.frame], static_cast<float>(w.z));
       const bool sampled = seen && above == ahead;
+      const Component component = componentOf(l, above);
+      if (by != nullptr && !shadow.refused) by->add(slot_[i], component, value);
       if (shadow.refused && lit.strays < lit.kMostStrays) {
         // to light samples and to those of other lobes it is not there, nor is its density; its own bring theirs
         lit.any = true;
         if (!sampled) continue;
         if (slot_[i] != kCosine) p[slot_[i]] += share_[i] * static_cast<float>(v.pdf);
         if (!(density > std::numeric_limits<float>::min())) continue;
-        own[lit.strays] = {value * shadow.bySurface, density, density, -1};
+        own[lit.strays] = {value * shadow.bySurface, density, density, -1, component};
         lit.stray[lit.strays++].slot = slot_[i];
         continue;
       }
@@ -281,11 +305,11 @@ class LobeSurface {
           const float pdf = strength * static_cast<float>(s.pdf);
           if (lit.strays == lit.kMostStrays || !(pdf > std::numeric_limits<float>::min())) return;
           own[lit.strays] = {single(s.fCos) * reached, pdf, strength * static_cast<float>(s.counted),
-                             s.alone ? parts : -1};
+                             s.alone ? parts : -1, component};
           lit.stray[lit.strays++].slot = slot_[i];
         });
       }
-      part[parts++] = {value, density};
+      part[parts++] = {value, density, component};
       lit.density += density;
       (above == ahead ? lit.same : lit.other)[slot_[i]] += value * shadow.byLight;
       lit.any = lit.any || shadow.byLight != (sampled ? shadow.bySurface : 0);
@@ -300,8 +324,14 @@ class LobeSurface {
       s.f = own[k].f * (own[k].counted / own[k].pdf), s.density = own[k].counted;
       for (int i = 0; i < parts; ++i)
         if (i != own[k].without) s.f += part[i].f, s.density += part[i].density;
-      s.f = s.f * (own[k].pdf / s.density);
+      const float scale = own[k].pdf / s.density;
+      s.f = s.f * scale;
       f[s.slot] += s.f;
+      if (by != nullptr) [[unlikely]] {
+        by->add(s.slot, own[k].component, own[k].f * (own[k].counted / s.density));
+        for (int i = 0; i < parts; ++i)
+          if (i != own[k].without) by->add(s.slot, part[i].component, part[i].f * scale);
+      }
       lit.any = true;
     }
   }
@@ -330,6 +360,7 @@ class LobeSurface {
     from.lost = !(wi.z != T(0)) || !leaves(l, wi.z > T(0));
     return global(l, wi);
   }
+  Component component(const Sample& from) const { return componentOf(lobe_[from.lobe], !from.transmits); }
   // Of a sharp lobe's sample: f cos / pdf, the choice of the lobe included.
   template <class T>
   Rgb weight(const Sample& from, Vec3<T> wi, Vec3<T> wo) const {

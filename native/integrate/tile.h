@@ -37,7 +37,10 @@ class Noted {
     const Rgb through = x.surface.transparent;
     done_ = !(1 - (through.x + through.y + through.z) / 3 < world_.scene.film.alphaThreshold);
     if (!done_) return;
-    addTo(pixel_.normal, x.frame.z);
+    if constexpr (requires { x.surface.normal(); })
+      addTo(pixel_.normal, x.surface.normal());
+    else
+      addTo(pixel_.normal, x.frame.z);
     const Shape& shape = world_.geometry.shapes[hit.shape];
     if (data_ == nullptr || shape.part->uvs.empty()) return;
     const Vec2f uv = detail::uvAt(shape, hit);
@@ -118,7 +121,7 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
   }
   noted(x, hit);
   addTo(pixel.albedo, s.albedo() * seenThrough);
-  const auto addLight = [&](LightPixel::Sums& sums, const std::array<Rgb, kComponents>& values, Rgb by) {
+  const auto addLight = [&](LightPixel::Sums& sums, const PerComponent& values, Rgb by) {
     for (size_t c = 0; c < kComponents; ++c) DataPixel::add(sums[c], values[c] * by);
   };
   if (light != nullptr) [[unlikely]]

@@ -14,6 +14,7 @@
 
 #include "gltf/file.h"
 #include "math/clones.h"
+#include "math/hash.h"
 
 namespace wardmis {
 namespace {
@@ -70,19 +71,18 @@ double calibrate() {
 }
 
 std::string hashOf(std::span<const std::filesystem::path> files) {
-  uint64_t hash = 0xcbf29ce484222325ULL;
-  const auto add = [&](uint64_t byte) { hash = (hash ^ byte) * 0x100000001b3ULL; };
+  Fnv1a hash;
   for (size_t i = 0; i < files.size(); ++i) {
     std::error_code error;
     if (i > 0 && !std::filesystem::is_regular_file(files[i], error)) {
-      add(1);
+      hash.add(1);
       continue;
     }
     const Bytes bytes = mapFile(files[i]);
-    for (int k = 0; i > 0 && k < 8; ++k) add(bytes.size() >> (8 * k) & 0xFF);
-    for (const auto byte : bytes.data) add(static_cast<uint8_t>(byte));
+    for (int k = 0; i > 0 && k < 8; ++k) hash.add(bytes.size() >> (8 * k) & 0xFF);
+    for (const auto byte : bytes.data) hash.add(static_cast<uint8_t>(byte));
   }
-  return fmt::format("{:016x}", hash);
+  return fmt::format("{:016x}", hash.value());
 }
 
 }  // namespace wardmis

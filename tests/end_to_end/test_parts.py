@@ -6,6 +6,7 @@ import json
 import shutil
 import signal
 import subprocess
+from random import Random
 from subprocess import PIPE
 
 import exr
@@ -114,6 +115,31 @@ class Parts(CommandTest):
         self.refused(2, "merge", first, rest, "-o", self.folder / "out.png", says=["ends in .exr"])
         self.refused(4, "merge", first, rest, "-o", self.folder / "none" / "out.exr", says=["folder does not exist"])
         self.assertFalse(self.out.exists())
+
+    def test_no_bit_of_a_header_that_is_another_makes_another_image(self):
+        first, rest = self.parts("0..8", "8..24")
+        right, damaged = self.folder / "right.exr", self.folder / "damaged.exr"
+        self.run_command("merge", first, rest, "-o", right)
+        image = exr.read(right).passes
+        whole = rest.read_bytes()
+        random, found = Random(1), 0
+        header = whole.index(b"wardmis:part_hash") + 64
+        for _ in range(150):
+            flipped = bytearray(whole)
+            flipped[random.randrange(header)] ^= 1 << random.randrange(8)
+            damaged.write_bytes(flipped)
+            self.out.unlink(missing_ok=True)
+            words = [BINARY, "merge", first, damaged, "-o", self.out]
+            done = subprocess.run(words, capture_output=True, text=True, errors="replace", timeout=60, check=False)
+            if done.returncode != 0:
+                self.assertIn(done.returncode, (2, 4), done.stderr)
+                self.assertIn(str(damaged), done.stderr)
+                self.assertNotIn("json", done.stderr)
+                found += 1
+                continue
+            for name, values in exr.read(self.out).passes.items():
+                self.assertEqual(values.tobytes(), image[name].tobytes(), name)
+        self.assertGreater(found, 100)
 
     def test_what_is_left_of_a_stopped_part_is_a_part(self):
         settings = "--spp", str(1 << 20), "--samples", f"4..{1 << 20}", "--allocation", "equal"

@@ -136,6 +136,41 @@ def colors_of_layers():
         ball(made, (x, 0, 0.8), 0.75)
 
 
+def bump(tree):
+    made = add(tree, "Bump", Strength=0.6)
+    tree.links.new(add(tree, "TexNoise", Scale=3.0).outputs[0], made.inputs["Height"])
+    return made.outputs[0]
+
+
+@scene(passes=("normal",), samples=64)
+def of_what_closures_turn():
+    """The normal is the mean of the closures', by their weights."""
+    room()
+    for x, kind in ((-1.6, "BsdfPrincipled"), (0.0, "BsdfGlass"), (1.6, "BsdfDiffuse")):
+        made, tree, output = material(kind)
+        both, turned = add(tree, "MixShader", Fac=0.7), add(tree, kind)
+        tree.links.new(bump(tree), turned.inputs["Normal"])
+        tree.links.new(add(tree, "BsdfDiffuse").outputs[0], both.inputs[1])
+        tree.links.new(turned.outputs[0], both.inputs[2])
+        tree.links.new(both.outputs[0], output.inputs["Surface"])
+        ball(made, (x, 0, 0.8), 0.75)
+
+
+@scene(passes=LIGHT[:4:2], samples=256, block=16)
+def light_on_turned_normals():
+    """Where lobes are more than techniques, a technique is of several components."""
+    sheet(diffuse((0.6, 0.5, 0.4)), size=12)
+    lamp("SUN", (1, -1, 5), 3, target=(0, 0, 0))
+    camera((0.6, -5, 5))
+    for x, turned in ((-1.2, False), (1.2, True)):
+        made, tree, output = material("Turned" if turned else "Smooth")
+        node = add(tree, "BsdfPrincipled", Roughness=0.5)
+        if turned:
+            tree.links.new(bump(tree), node.inputs["Normal"])
+        tree.links.new(node.outputs[0], output.inputs["Surface"])
+        ball(made, (x, 0, 0.9), 0.85)
+
+
 def emitter():
     box(shader("Emission", Color=(1, 0.5, 0.2, 1), Strength=2.0), (0, 1.6, 0.4), (0.4, 0.4, 0.4))
 
