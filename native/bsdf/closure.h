@@ -14,6 +14,7 @@ namespace wardmis {
 enum class Glossy : uint8_t { kGgx, kBeckmann, kMultiGgx, kAshikhminShirley };
 
 inline constexpr float kLeastWeight = 1e-5f;  // Cycles makes no closure of less
+inline float meanOf(Rgb weight) { return std::abs(weight.x + weight.y + weight.z) / 3; }
 inline Rgb gray(float v) { return {v, v, v}; }
 inline Rgb clampedTo1(Rgb c) {
   return {std::clamp(c.x, 0.0f, 1.0f), std::clamp(c.y, 0.0f, 1.0f), std::clamp(c.z, 0.0f, 1.0f)};
@@ -27,7 +28,7 @@ inline void atLeastRough(Lobe& l) { l.ax = std::max(l.ax, 1e-4f), l.ay = std::ma
 // Hands on a lobe that gives something; rough ones below Cycles' threshold as perfectly smooth.
 template <class Add>
 inline void addLobe(int version, Lobe l, Add&& add) {
-  const auto gives = [](Rgb w) { return std::abs(w.x + w.y + w.z) >= 3 * kLeastWeight; };
+  const auto gives = [](Rgb w) { return meanOf(w) >= kLeastWeight; };
   if (!gives(l.weight) && !(isGlass(l.kind) && gives(l.through))) return;
   bool smooth = l.ax * l.ay <= (version == 3 ? 1e-7f : 2e-10f);
   if (smooth && version == 3 && (l.kind == LobeKind::kGgx || l.kind == LobeKind::kBeckmann)) {
@@ -53,7 +54,10 @@ inline void addLobe(int version, Lobe l, Add&& add) {
       if (!straight) break;
       // two directions are two techniques: what Fresnel makes of them is known before one is drawn
       l.kind = LobeKind::kMirror;
-      if (gives(l.weight)) add(l);
+      if (gives(l.weight)) {
+        add(l);
+        l.closure = 0;
+      }
       l.kind = LobeKind::kSharpRefraction, l.weight = l.through;
       if (!gives(l.weight)) return;
       break;
@@ -156,7 +160,9 @@ inline void addGlassLobe(int version, const GlassLook& look, Rgb weight, float a
   Lobe l = roughLobe(version, look.kind, weight * look.reflectionTint, alpha, alpha);
   l.masking = look.masking, l.fresnel = look.fresnel, l.f0 = look.f0, l.eta = eta;
   l.through = weight * look.transmissionTint, l.compensation = look.compensation;
-  l.paleColor = version == 3 && !look.unseenFacets;  // a closure of its own, which passes take for transmission
+  if (version == 3 && !look.unseenFacets) l.passColor = PassColor::kPale;  // which passes take for transmission
+  if (version == 4) l.passColor = PassColor::kMeanReflected;
+  l.closure = meanOf(version == 3 && look.unseenFacets ? l.weight + l.through : weight / look.compensation);
   l.unseenFacets = look.unseenFacets, l.refractsUp = look.refractsUp;
   addLobe(version, l, add);
 }

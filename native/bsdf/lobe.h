@@ -63,6 +63,13 @@ enum class Fresnel : uint8_t {
   kF82,         // f0, edge (dielectric.h)
 };
 
+// The reflectance that passes of colours show of facets that blend to white or have an edge's colour.
+enum class PassColor : uint8_t {
+  kMean,           // the mean over the facets that a view sees, by table; the rest passes (5.2)
+  kMeanReflected,  // the same, but by a facet along the normal what passes (4.3)
+  kPale,           // reflects all, or of glass transmits all (3.4)
+};
+
 struct Lobe {
   LobeKind kind = LobeKind::kLambert;
   Fresnel fresnel = Fresnel::kNone;
@@ -72,9 +79,10 @@ struct Lobe {
   bool refractsUp = false;    // samples go where facets refract to above the mean surface, too: strays()
   bool byFirstAxis = false;   // facets are drawn as if both axes had the first one's roughness
   bool defended = false;      // glass: neither side is drawn less often than once in nine times
-  bool paleColor = false;     // to passes, as in Cycles 3.4, its facets reflect all; of glass: transmit all
+  PassColor passColor = PassColor::kMean;
   Rgb weight{1, 1, 1}, through{1, 1, 1};
   Rgb compensation{1, 1, 1};  // what both hold for light reflected more than once, and colours of passes do not
+  float closure = -1;         // mean weight of the closure in Cycles that it is of, for passes; below 0: its own
   float ax = 1, ay = 1;
   float eta = 1;  // of the side below over that above
   Rgb f0{1, 1, 1}, edge{0, 0, 0};

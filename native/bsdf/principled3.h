@@ -37,7 +37,7 @@ template <class Add>
 inline void addSpecular3(const Principled3& p, Rgb weight, float cosThetaO, Add&& add) {
   const float aspect = std::sqrt(std::max(0.0f, 1 - p.anisotropic * 0.9f)), r2 = p.roughness * p.roughness;
   Lobe l = roughLobe(3, LobeKind::kGgx, weight, r2 / aspect, r2 * aspect);
-  l.fresnel = Fresnel::kBlended, l.paleColor = true;
+  l.fresnel = Fresnel::kBlended, l.passColor = PassColor::kPale;
   l.eta = 2 / (1 - std::sqrt(std::max(0.0f, 0.08f * p.specular))) - 1;
   const float luminance = 0.3f * p.baseColor.x + 0.6f * p.baseColor.y + 0.1f * p.baseColor.z;
   l.f0 = clampedTo1(hueOf(p.baseColor, luminance, p.specularTint) * (p.specular * 0.08f * (1 - p.metallic)) +
@@ -67,7 +67,7 @@ inline void addGlass3(const Principled3& p, Rgb weight, float cosThetaO, Add&& a
   }
   const float f = fresnelDielectric(cosThetaO, eta);
   Lobe l = roughLobe(3, LobeKind::kGgx, weight * f, alpha, alpha);
-  l.fresnel = Fresnel::kBlended, l.paleColor = true, l.f0 = tint, l.eta = eta;
+  l.fresnel = Fresnel::kBlended, l.passColor = PassColor::kPale, l.f0 = tint, l.eta = eta;
   addLobe(3, l, add);
   const float through = p.multiscatter ? p.roughness : 1 - (1 - p.roughness) * (1 - p.transmissionRoughness);
   addLobe(3,
@@ -112,7 +112,8 @@ inline void expand(const Principled3& p, Rgb weight, float cosBase, float cosCoa
     const float alpha = p.clearcoatRoughness * p.clearcoatRoughness;
     Lobe l = roughLobe(3, LobeKind::kClearcoat, weight * (0.25f * p.clearcoat), alpha, alpha);
     l.frame = kCoatFrame, l.fresnel = Fresnel::kBlended, l.eta = 1.5f, l.f0 = gray(0.04f);
-    l.paleColor = true, l.compensation = gray(0.25f * p.clearcoat);  // passes do not know how strong the coat is
+    l.passColor = PassColor::kPale,
+    l.compensation = gray(0.25f * p.clearcoat);  // passes do not know how strong the coat is
     addLobe(3, l, add);
   }
 }

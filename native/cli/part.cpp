@@ -63,12 +63,8 @@ void makePart(ExrImage& image, const FilmBuffer& film, json whole, const ImageDe
                 {"keeps_light", !film.light.empty()},
                 {"keeps_catchers", !film.catchers.empty()}});
   image.words = wordsOf(film);
-  const json part{{"from", film.first},
-                  {"to", film.first + film.samples},
-                  {"whole", std::move(whole)},
-                  {"statistics", statistics},
-                  {"pilot_counts", pilotCounts},
-                  {"words", hashOf(image.words)}};
+  const json part{{"from", film.first},       {"to", film.first + film.samples}, {"whole", std::move(whole)},
+                  {"statistics", statistics}, {"pilot_counts", pilotCounts},     {"words", hashOf(image.words)}};
   image.attributes.emplace_back(kAttribute, dumped(part));
   image.attributes.emplace_back(kHashAttribute, hashOf(image.attributes.back().second));
 }

@@ -246,8 +246,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
   // Calls to(component, part) for what an integrand's value is made of.
   const auto eachComponent = [&](size_t integrand, Rgb value, auto&& to) {
     if constexpr (kGeneral) {
-      for (size_t c = 0; c < kComponents; ++c)
-        to(static_cast<Component>(c), value * byComponent.part(integrand, c));
+      for (size_t c = 0; c < kComponents; ++c) to(static_cast<Component>(c), value * byComponent.part(integrand, c));
     } else {
       to(integrand == kCosine ? Component::kDiffuse : Component::kGlossy, value);
     }

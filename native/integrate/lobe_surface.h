@@ -202,11 +202,10 @@ class LobeSurface {
   }
   // The mean of the lobes' normals, unit, in world space, which Cycles shows in passes.
   Vec3f normal() const {
-    const auto mean = [](Rgb w) { return std::abs(w.x + w.y + w.z) / 3; };
-    Vec3f sum = frame_[0].z * (mean(diffuse_) + mean(transparent));
+    Vec3f sum = frame_[0].z * (meanOf(diffuse_) + meanOf(transparent));
     for (int i = 0; i < count_; ++i) {
       const Lobe& l = lobe_[i];
-      sum += frame_[l.frame].z * mean((isGlass(l.kind) ? l.weight + l.through : l.weight) / l.compensation);
+      sum += frame_[l.frame].z * (l.closure < 0 ? meanOf(l.weight / l.compensation) : l.closure);
     }
     const float length2 = dot(sum, sum);
     return length2 > 0 ? sum / std::sqrt(length2) : frame_[0].z;
@@ -220,14 +219,14 @@ class LobeSurface {
       Lobe near = l;
       near.through = {0, 0, 0};
       Rgb reflected = albedoAt(near, cosine(l.frame)), passed = albedoAt(l, cosine(l.frame)) - reflected;
-      if (l.paleColor) {
+      if (l.passColor == PassColor::kPale) {
         reflected = l.weight, passed = {0, 0, 0};
       } else if (wardmis::reflects(l.kind) && (l.fresnel == Fresnel::kBlended || l.fresnel == Fresnel::kF82)) {
         const float rough = tableRoughness(l), c = cosine(l.frame);
-        const Rgb facets = whitened(
-            l.f0, l.fresnel == Fresnel::kF82 ? schlickAlbedo(rough, c) : blendAlbedo(rough, c, l.eta));
+        const Rgb facets =
+            whitened(l.f0, l.fresnel == Fresnel::kF82 ? schlickAlbedo(rough, c) : blendAlbedo(rough, c, l.eta));
         reflected = l.weight * facets;
-        if (isGlass(l.kind)) passed = l.through * (Rgb{1, 1, 1} - facets);
+        if (isGlass(l.kind) && l.passColor == PassColor::kMean) passed = l.through * (Rgb{1, 1, 1} - facets);
       }
       sum[static_cast<size_t>(componentOf(l, wardmis::reflects(l.kind)))] += reflected / l.compensation;
       sum[static_cast<size_t>(Component::kTransmission)] += passed / l.compensation;
@@ -243,8 +242,8 @@ class LobeSurface {
   // f cos of each technique's lobes and their densities at a direction wi, both in frame 0; ahead: it leaves on the
   // side of the viewer. Sharp lobes are zero. by: null, or where f cos is told by component.
   template <class T>
-  void evaluate(Vec3<T> wi, Vec3<T> wo, bool ahead, std::array<Rgb, K - 1>& f, Fractions<K>& p,
-                LitOtherwise<K>& lit, FByComponent<K>* by = nullptr) const {
+  void evaluate(Vec3<T> wi, Vec3<T> wo, bool ahead, std::array<Rgb, K - 1>& f, Fractions<K>& p, LitOtherwise<K>& lit,
+                FByComponent<K>* by = nullptr) const {
     struct {
       Rgb f;
       float density;  // as Cycles counts it, times the strength
@@ -264,7 +263,8 @@ class LobeSurface {
     lit.density = strength_[kCosine] * cosine;
     lit.any = !ahead && hasDiffuse() && cosine > 0;
     part[parts++] = {f[kCosine] + lit.other[kCosine], lit.density, Component::kDiffuse};
-    if (by != nullptr) by->add(kCosine, Component::kDiffuse, part[0].f);
+    if (by != nullptr) [[unlikely]]
+      by->add(kCosine, Component::kDiffuse, part[0].f);
     float drawn = ahead ? lit.density : 0, counted = drawn;  // of samples that leave there, and as Cycles has it
     for (int i = 0; i < count_; ++i) {
       const Lobe& l = lobe_[i];
@@ -285,8 +285,11 @@ class LobeSurface {
                                                     : bumpShadow(bump_[l.frame], l.kind, static_cast<float>(wi.z),
                                                                  ownCosine_[l.frame], static_cast<float>(w.z));
       const bool sampled = seen && above == ahead;
-      const Component component = componentOf(l, above);
-      if (by != nullptr && !shadow.refused) by->add(slot_[i], component, value);
+      Component component{};
+      if (by != nullptr) [[unlikely]] {
+        component = componentOf(l, above);
+        if (!shadow.refused) by->add(slot_[i], component, value);
+      }
       if (shadow.refused && lit.strays < lit.kMostStrays) {
         // to light samples and to those of other lobes it is not there, nor is its density; its own bring theirs
         lit.any = true;
@@ -373,7 +376,8 @@ class LobeSurface {
   static Component componentOf(const Lobe& l, bool ahead) {
     if (l.kind == LobeKind::kVelvet) return Component::kGlossy;  // to Cycles 3.4's passes; its rays are diffuse
     if (isMatte(l.kind)) return Component::kDiffuse;
-    return ahead && !(l.paleColor && isGlass(l.kind)) ? Component::kGlossy : Component::kTransmission;
+    return ahead && !(l.passColor == PassColor::kPale && isGlass(l.kind)) ? Component::kGlossy
+                                                                          : Component::kTransmission;
   }
   template <class T>
   static Rgb single(Vec3<T> v) {

@@ -183,7 +183,14 @@ def light():
     ball(shader("BsdfPrincipled", Base_Color=(0.9, 0.7, 0.3, 1), Metallic=1.0, Roughness=0.5), (1, 0, 0.8), 0.75)
 
 
-@scene(passes=LIGHT, bounces=3, samples=256, block=16, **FEW_PATHS)
+@scene(passes=("transmission-direct",), samples=256, block=16)
+def light_that_passes_once():
+    sky((0.3, 0.4, 0.5))
+    camera((0.6, -5, 5))
+    sheet(shader("BsdfRefraction", Color=(0.7, 0.9, 0.8, 1), Roughness=0.6), size=2)
+
+
+@scene(passes=(*LIGHT[:4], "transmission-indirect"), bounces=3, samples=256, block=16, **FEW_PATHS)
 def light_that_passes():
     """Of the sky alone: that of lamps through glass is too noisy to be compared."""
     materials()
