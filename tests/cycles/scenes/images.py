@@ -992,15 +992,16 @@ def size_limited():
 
 @scene(samples=32)
 def size_limited_of_floats():
-    """Where they are more than half."""
+    """Where they are more than a number that no mean of 16 texels is: ties would be for rounding to decide."""
     simplified(None)
     picture = image("Speckled", speckled(303, 260), floats=True)
-    more = painted(
-        lambda tree: add(tree, "Math", {"operation": "GREATER_THAN"}, Value=texture(tree, picture).outputs[0]).outputs[
-            0
-        ]
-    )
-    bpy.context.scene.objects["Sheet"].data.materials[0] = more
+
+    def more(tree):
+        made = add(tree, "Math", {"operation": "GREATER_THAN"}, Value=texture(tree, picture).outputs[0])
+        made.inputs[1].default_value = 0.47
+        return made.outputs[0]
+
+    bpy.context.scene.objects["Sheet"].data.materials[0] = painted(more)
 
 
 @scene
