@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Error and time of the default beside Cycles', scene by scene, both in one run: each scene is compared as by
+./dev compare, whose report has the figures. Run by ./dev bench."""
+
+import argparse
+import json
+import sys
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import blender
+from blender import ROOT
+
+SCENES = (
+    "veach",
+    "veach-direct",
+    "teapot",
+    "teapot-direct",
+    "veach-mesh-lights",
+    "door",
+    "area-lamps",
+    "image-sky",
+    "studio",
+)
+DEFAULT, EQUAL = "auto", "equal"
+NOT_MEASURED = "–"
+
+
+@dataclass
+class Interval:
+    mean: float
+    low: float
+    high: float
+
+    def __str__(self) -> str:
+        return f"{self.mean:.2f} [{self.low:.2f}, {self.high:.2f}]"
+
+    @classmethod
+    def of(cls, ratio: dict[str, float] | None) -> "Interval | None":
+        return None if ratio is None else cls(ratio["mean"], ratio["low"], ratio["high"])
+
+
+@dataclass
+class Row:
+    scene: str
+    cycles: str  # its version
+    efficiency: Interval | None  # 1 / (relMSE x CPU time) of the default over Cycles'
+    over_equal: Interval | None  # the same over equal counts
+    cpu: float | None  # of the default by that of Cycles, at the same camera samples; where that is long enough to tell
+    error: float  # relMSE of the default
+    common: bool  # both are held against one reference
+
+    def cells(self) -> list[str]:
+        held = "one" if self.common else "its own"
+        ratios = [NOT_MEASURED if r is None else str(r) for r in (self.efficiency, self.over_equal)]
+        cpu = NOT_MEASURED if self.cpu is None else f"{self.cpu:.2f}"
+        return [self.scene, *ratios, cpu, f"{self.error:.2g}", held]
+
+
+HEADINGS = ["scene", "efficiency / Cycles'", "/ equal counts'", "CPU / Cycles'", "relMSE", "reference"]
+
+
+def row(scene: str, report: dict[str, Any]) -> Row:
+    of = {c["name"]: c for c in report["configurations"]}
+    # the default is the baseline, so a ratio is another's variance x time over its
+    cycles, equal, own = of["Cycles"], of[EQUAL], of[DEFAULT]
+    last = own["curve"][-1], cycles["curve"][-1]
+    known = all(point["cpu"] is not None for point in last)
+    return Row(
+        scene,
+        cycles["renderer"],
+        Interval.of(cycles["efficiency"]["ratio"]),
+        Interval.of(equal["efficiency"]["ratio"]),
+        last[0]["cpu"]["mean"] / last[1]["cpu"]["mean"] if known else None,
+        last[0]["relmse"]["mean"],
+        any(m["common"] for m in report["models"]),
+    )
+
+
+def measured(scene: str, folder: Path, options: argparse.Namespace) -> Row:
+    print(f"bench: {scene}", file=sys.stderr, flush=True)
+    blender.run("--python-exit-code", "1", "--python", ROOT / "tools" / "bench_scenes.py", "--", folder, scene)
+    out = folder / scene
+    words = ["-c", DEFAULT, "-c", EQUAL, "--seeds", options.seeds, "--cycles-seeds", options.seeds]
+    words += ["--max-spp", options.samples, "--resolution", options.resolution]
+    script = ROOT / "blend" / "compare.py"
+    blender.run(folder / f"{scene}.blend", "--python-exit-code", "1", "--python", script, "--", "-o", out, *words)
+    return row(scene, json.loads((out / "report.json").read_text()))
+
+
+def markdown(rows: list[Row]) -> str:
+    lines = [HEADINGS, ["---"] * len(HEADINGS), *(r.cells() for r in rows)]
+    return "\n".join("| " + " | ".join(cells) + " |" for cells in lines)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(prog="./dev bench scenes", description=__doc__)
+    parser.add_argument("scenes", nargs="*", default=SCENES, help=f"of: {' '.join(SCENES)} (all)")
+    parser.add_argument("--seeds", type=int, default=8, help="renders of each configuration (%(default)s)")
+    parser.add_argument("--samples", type=int, default=64, help="camera samples per pixel (%(default)s)")
+    parser.add_argument("--resolution", default="144x96", help="WxH (%(default)s)")
+    parser.add_argument("--out", type=Path, default=ROOT / "out" / "bench", help="reports and bench.json (%(default)s)")
+    options = parser.parse_args()
+    if unknown := set(options.scenes) - set(SCENES):
+        parser.error(f"there is no scene {', '.join(sorted(unknown))}; there are: {' '.join(SCENES)}")
+    options.out = options.out.resolve()
+    options.out.mkdir(parents=True, exist_ok=True)
+    try:
+        rows = [measured(scene, options.out, options) for scene in options.scenes]
+    except blender.RenderFailed as error:
+        sys.exit(f"bench: {error}")
+    (options.out / "bench.json").write_text(json.dumps([asdict(r) for r in rows], indent=1) + "\n")
+    print(f"{rows[0].cycles}; {options.samples} samples per pixel, {options.resolution}, {options.seeds} seeds\n")
+    print(markdown(rows))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The scenes of ./dev bench, in Blender: `blender --background --addons wardmis --python tools/bench_scenes.py -- DIR NAME...`
+
+Those of blend/ as they are or with one thing changed, and rooms of shaders that both renderers have alike."""
+
+import math
+import sys
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(ROOT / "blend")]
+
+from parts import (  # noqa: E402
+    add_area,
+    add_camera,
+    add_mesh,
+    box_mesh,
+    connect,
+    emitter,
+    empty_world,
+    look_at,
+    set_up,
+    sphere_mesh,
+    square,
+)
+
+
+def main(folder, names):
+    for name in names:
+        SCENES[name]()
+        bpy.ops.wm.save_as_mainfile(filepath=str(Path(folder) / f"{name}.blend"), compress=True)
+
+
+def opened(name, integrator="path"):
+    bpy.ops.wm.open_mainfile(filepath=str(ROOT / "blend" / f"{name}.blend"))
+    bpy.context.scene.wardmis.integrator = integrator
+
+
+def begun():
+    """An empty scene, without light."""
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    set_up(768, 512)
+    empty_world().nodes["Background"].inputs["Strength"].default_value = 0.0
+
+
+def principled(name, color, roughness):
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    material.node_tree.nodes.clear()
+    node = material.node_tree.nodes.new("ShaderNodeBsdfPrincipled")
+    node.inputs["Base Color"].default_value = (*color, 1)
+    node.inputs["Roughness"].default_value = roughness
+    connect(material, node)
+    return material
+
+
+def box(name, center, scale, material):
+    vertices, faces = box_mesh()
+    return add_mesh(name, np.multiply(vertices, scale) + center, faces, material)
+
+
+def things():
+    """A floor, and a ball and a box on it."""
+    vertices, faces = square(6)
+    add_mesh("Floor", vertices, faces, principled("Floor", (0.6, 0.55, 0.5), 0.6))
+    vertices, faces = sphere_mesh(64, 32)
+    add_mesh("Ball", np.add(vertices, (-1.2, 0, 1)), faces, principled("Ball", (0.7, 0.2, 0.1), 0.25), smooth=True)
+    box("Box", (1.3, 0.3, 0.7), (0.7, 0.7, 0.7), principled("Box", (0.2, 0.4, 0.7), 0.4))
+
+
+def veach_mesh_lights():
+    """Spheres of the same light in place of the lamps."""
+    opened("veach")
+    for lamp in [o for o in bpy.data.objects if o.type == "LIGHT"]:
+        radius, center = lamp.data.shadow_soft_size, lamp.location.copy()
+        radiance = lamp.data.energy / (4 * math.pi**2 * radius**2)
+        bpy.data.objects.remove(lamp)
+        vertices, faces = sphere_mesh(24, 12)
+        material = emitter("Light", radiance)
+        add_mesh("Light", np.multiply(vertices, radius) + center, faces, material)
+
+
+def door():
+    """A room without a lamp, lit through the door of another."""
+    begun()
+    things()
+    wall = principled("Wall", (0.7, 0.7, 0.7), 0.8)
+    for name, center, scale in (
+        ("Back", (0, 4, 2), (6, 0.1, 2)),
+        ("Left", (-6, 0, 2), (0.1, 6, 2)),
+        ("Front", (0, -6, 2), (6, 0.1, 2)),
+        ("Ceiling", (0, 0, 4), (6, 6, 0.1)),
+        ("Right, before the door", (3, -2.75, 2), (0.1, 3.25, 2)),
+        ("Right, behind it", (3, 2.75, 2), (0.1, 1.25, 2)),
+        ("Right of the other", (6, 0, 2), (0.1, 6, 2)),
+    ):
+        box(name, center, scale, wall)
+    add_area((4.5, 2.5, 3.8), (4.5, 2.5, 0), 1.0, 600)
+    add_camera((-1, -5.5, 2.2), (0.2, 0.5, 0.9), 60)
+
+
+def area_lamps():
+    """A hundred small ones in rows, each at another turn."""
+    begun()
+    things()
+    random = np.random.default_rng(1)
+    for x in np.linspace(-5, 5, 10):
+        for y in np.linspace(-5, 5, 10):
+            lamp = add_area((x, y, 4), (x, y, 0), 0.3, 8)
+            lamp.rotation_euler = look_at((0, 0, 0), (*random.uniform(-0.7, 0.7, 2), -1))
+    add_camera((0, -7, 3.2), (0, 0, 0.8), 50)
+
+
+def image_sky():
+    """A sun of some pixels in a sky that is blue above and brown below."""
+    begun()
+    things()
+    width, height = 1024, 512
+    up = np.linspace(-1, 1, height)[:, None, None]
+    pixels = np.ones((height, width, 4), np.float32)
+    pixels[..., :3] = np.where(up > 0, np.array((0.25, 0.4, 0.8)) * (1.2 - up), (0.12, 0.1, 0.07))
+    pixels[360:366, 300:306, :3] = (4000, 3600, 3000)
+    image = bpy.data.images.new("Sky", width, height, float_buffer=True)
+    image.pixels.foreach_set(pixels.ravel())
+    image.pack()
+    tree = bpy.context.scene.world.node_tree
+    texture = tree.nodes.new("ShaderNodeTexEnvironment")
+    texture.image = image
+    background = tree.nodes["Background"]
+    background.inputs["Strength"].default_value = 1.0
+    tree.links.new(texture.outputs["Color"], background.inputs["Color"])
+    add_camera((0, -7, 3.2), (0, 0, 0.8), 50)
+
+
+SCENES = {
+    "veach": lambda: opened("veach"),
+    "veach-direct": lambda: opened("veach", "direct"),
+    "teapot": lambda: opened("teapot"),
+    "teapot-direct": lambda: opened("teapot", "direct"),
+    "veach-mesh-lights": veach_mesh_lights,
+    "door": door,
+    "area-lamps": area_lamps,
+    "image-sky": image_sky,
+    "studio": lambda: opened("studio"),
+}
+
+if __name__ == "__main__":
+    arguments = sys.argv[sys.argv.index("--") + 1 :]
+    main(arguments[0], arguments[1:])
