@@ -24,7 +24,7 @@ struct Pixel {
   RgbSum sum, squares;  // of the samples' radiance
   UnitSum<1> alpha;
   UnitSum<3> normal, albedo;
-  float depth = 1e10f;  // planar, of the image's first sample
+  float depth = 1e10f;  // planar; through the pixel's centre
 
   void add(Rgb v) {
     const std::array<double, 3> c{double(v.x), double(v.y), double(v.z)};
@@ -35,7 +35,7 @@ struct Pixel {
 
 // What the camera meets first, for compositing: kept where a pass of it is wanted.
 struct DataPixel {
-  Vec3f position{0, 0, 0};                   // world; of the first sample, as the indices are
+  Vec3f position{0, 0, 0};                   // world; through the pixel's centre, as the indices are
   float objectIndex = 0, materialIndex = 0;  // 0 where nothing was hit
   RgbSum uv;                                 // over the samples of (u, v, 1)
   RgbSum emission, environment;              // of what is seen of them without a surface between

@@ -10,33 +10,65 @@
 
 namespace wardmis {
 
-// Where a camera ray meets a surface: what the pixel's passes of data show, of one of its samples.
+// Key of the random numbers of the ray that passes of data show.
+inline constexpr uint32_t kFirstSample = 0x6a09e667u;
+
+// Whether so much of a surface is there that passes of data show it and nothing behind it, as in Cycles.
 template <class X>
-[[gnu::noinline]] void note(DataPixel& data, const RenderScene& world, const Hit& hit, const X& x) {
-  const Placement& placement = world.geometry.placements[hit.placement];
-  data.position = x.position;
-  data.objectIndex = placement.object != nullptr ? placement.object->index : 0;
-  data.materialIndex = world.scene.materials[static_cast<size_t>(x.material)].index;
+bool showsInPasses(const X& x, const Film& film) {
+  const Rgb through = x.surface.transparent;
+  return !(1 - (through.x + through.y + through.z) / 3 < film.alphaThreshold);
 }
 
-// Of surfaces that light goes straight through, what passes of data show as in Cycles: the first that is opaque enough,
-// else the last that the ray comes to.
+// What passes of data show of one ray through the pixel's centre, Cycles' first sample: the first surface that is
+// opaque enough, or where it leads no further the last one; nothing, where behind all of them is none.
+template <uint32_t N, size_t K>
+[[gnu::noinline]] void noteFirst(const RenderScene& world, const CameraRays& camera, const Ray& through, uint32_t key,
+                                 Pixel& pixel, DataPixel* data) {
+  const float nothing = pixel.depth;
+  Ray ray = through;
+  for (uint32_t passed = 0;; ++passed) {
+    const Hit hit = world.accel.intersect(ray);
+    if (!hit.valid()) {
+      pixel.depth = nothing;
+      if (data != nullptr) data->position = {0, 0, 0}, data->objectIndex = data->materialIndex = 0;
+      return;
+    }
+    const Placement& placement = world.geometry.placements[hit.placement];
+    if (placement.holdout) return;
+    const auto x = interact<N, K>(world.scene, world.geometry, ray, hit);
+    if constexpr ((N & kNeedsLobes) != 0)
+      if (x.surface.holdout >= 1) return;
+    pixel.depth = camera.depth(through, hit.t);
+    if (data != nullptr) [[unlikely]] {
+      data->position = x.position;
+      data->objectIndex = placement.object != nullptr ? placement.object->index : 0;
+      data->materialIndex = world.scene.materials[static_cast<size_t>(x.material)].index;
+    }
+    if constexpr ((N & kNeedsLobes) == 0) {
+      return;
+    } else {
+      if (showsInPasses(x, world.scene.film) || !detail::mayPass(world, ray, hit, world.mostFollowed)) return;
+      const Rgb left = x.surface.transparent;
+      const float passes = std::abs(left.x + left.y + left.z) / 3;
+      if (!(toUnit(combine(key, passed)) * (passes + x.surface.strength()) < passes)) return;
+      ray.tMin = detail::behind(x, ray.direction, hit.t);
+      ray.left = x.primitive;
+      ray.path = ray.path.passed();
+    }
+  }
+}
+
+// Of surfaces that a sample's light goes straight through, what its passes of normals and UVs show: the first that is
+// opaque enough.
 class Noted {
  public:
-  Noted(const RenderScene& world, const CameraRays& camera, const Ray& ray, bool first, Pixel& pixel, DataPixel* data)
-      : world_(world), camera_(camera), ray_(ray), first_(first), pixel_(pixel), data_(data) {}
+  Noted(const RenderScene& world, Pixel& pixel, DataPixel* data) : world_(world), pixel_(pixel), data_(data) {}
 
   template <class X>
   void operator()(const X& x, const Hit& hit) {
-    if (done_) return;
-    if (first_) {
-      pixel_.depth = camera_.depth(ray_, hit.t);
-      if (data_ != nullptr) [[unlikely]]
-        note(*data_, world_, hit, x);
-    }
-    const Rgb through = x.surface.transparent;
-    done_ = !(1 - (through.x + through.y + through.z) / 3 < world_.scene.film.alphaThreshold);
-    if (!done_) return;
+    if (done_ || !showsInPasses(x, world_.scene.film)) return;
+    done_ = true;
     if constexpr (requires { x.surface.normal(); })
       addTo(pixel_.normal, x.surface.normal());
     else
@@ -49,11 +81,9 @@ class Noted {
 
  private:
   const RenderScene& world_;
-  const CameraRays& camera_;
-  const Ray& ray_;
-  bool first_, done_ = false;  // first: of the pixel's samples
   Pixel& pixel_;
   DataPixel* data_;
+  bool done_ = false;
 };
 
 // Of a sample whose camera ray meets a shadow catcher first.
@@ -77,7 +107,7 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
   Rgb sum{0, 0, 0}, seenThrough{1, 1, 1};
   bool covered = !transparent;
   Ray ray = camera;
-  Noted noted{world, in.camera, camera, sample == 0, pixel, data};
+  Noted noted{world, pixel, data};
   const auto along = [&](float tMax, bool escaped) {
     world.emitters.along(ray, std::min(tMax, ray.tMax), escaped && !transparent, 0, nullptr, [&](const EmitterHit& e) {
       sum += e.radiance * seenThrough;
@@ -240,8 +270,14 @@ void renderTile(const KernelInput<K>& in, const Tile& tile, FilmBuffer& film, Pi
         float time = kMiddle;
         if (in.shutter != nullptr) [[unlikely]]
           time = in.shutter->at(in.sampler.get1D(key, kTimePoint, s), static_cast<float>(py) / height);
-        const Ray ray = in.camera.ray(static_cast<float>(px) + side * (0.5f + offset.x),
-                                      static_cast<float>(py) + side * (0.5f + offset.y), lens, time);
+        const auto through = [&](Vec2f at) {
+          return in.camera.ray(static_cast<float>(px) + side * (0.5f + at.x),
+                               static_cast<float>(py) + side * (0.5f + at.y), lens, time);
+        };
+        const Ray ray = through(offset);
+        if (s == 0)
+          if (const Ray central = through({0, 0}); central.tMax > 0)
+            noteFirst<N, K>(in.scene, in.camera, central, combine(key, kFirstSample), pixel, data);
         if (!(ray.tMax > 0)) [[unlikely]] {
           pixel.alpha.add({1});  // black, and no hole in the picture, as Cycles has it
           pixel.add({0, 0, 0});

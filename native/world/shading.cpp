@@ -188,6 +188,8 @@ void fill(const Scene& scene, const ShadedPoint& p, const Program& program, Shad
     const Vec3f e1 = edge(1), e2 = edge(2);
     barycentric(e1, e2, c.position.dx, at.dux, at.dvx);
     barycentric(e1, e2, c.position.dy, at.duy, at.dvy);
+    if (p.turned)  // seen from behind, Cycles turns the edges round, too: what is told by vertices is shifted backwards
+      at.dux = -at.dux, at.dvx = -at.dvx, at.duy = -at.duy, at.dvy = -at.dvy;
   }
   c.parametric = at.of({1, 0, 0}, {0, 1, 0}, {0, 0, 0});
   if (strand) c.parametric = {{p.u, p.v, 0}, {at.dux, 0, 0}, {at.duy, 0, 0}};

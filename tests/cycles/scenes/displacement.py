@@ -143,3 +143,35 @@ def along_tangents():
         one = sheet(made, size=0.8)
         one.location = number % 2 * 2 - 1, number // 2 * 2 - 1, 0
         one.rotation_euler, one.scale = (0.5 * number, 0.3, 0.4 * number), (1, 1.2, 1)
+
+
+@scene(samples=8)
+def seen_from_behind():
+    """By what vertices tell, by the place in a triangle, and by the place in space: heights are sampled beside the point."""
+
+    def coloured(coordinate, displaced=False):
+        made, tree, output = material(f"Behind by {coordinate}")
+        texture = add(tree, "TexNoise", Scale=3.0)
+        if coordinate == "Parametric":
+            tree.links.new(add(tree, "NewGeometry").outputs[coordinate], texture.inputs["Vector"])
+        else:
+            tree.links.new(add(tree, "TexCoord").outputs[coordinate], texture.inputs["Vector"])
+        half = add(tree, "VectorMath", {"operation": "MULTIPLY_ADD"})
+        half.inputs[1].default_value = half.inputs[2].default_value = (0.5, 0.5, 0.5)
+        if displaced:
+            moved = add(tree, "Displacement", Height=texture.outputs[0], Scale=0.5).outputs[0]
+            tree.links.new(moved, output.inputs["Displacement"])
+            normal = add(tree, "NewGeometry").outputs["Normal"]
+        else:
+            normal = add(tree, "Bump", Height=texture.outputs[0], Distance=0.5).outputs[0]
+        tree.links.new(normal, half.inputs[0])
+        tree.links.new(add(tree, "Emission", Color=half.outputs[0]).outputs[0], output.inputs["Surface"])
+        return made
+
+    looks = [coloured(c) for c in ("UV", "Generated", "Parametric", "Object")] + [coloured("UV", displaced=True)]
+    for k, look in enumerate(looks):
+        for y, turned in ((-0.6, False), (0.6, True)):
+            one = sheet(look, size=0.36)
+            one.location = 0.78 * (k - 2), y, 0
+            one.rotation_euler.x = 3.1415927 if turned else 0
+    face_on()

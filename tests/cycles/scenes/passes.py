@@ -43,6 +43,13 @@ def of_what_is_met_first():
     with_indices(ball(diffuse()), box(diffuse(), (1.5, 0, 0.5), (0.5, 0.5, 0.5)))
 
 
+@scene(passes=("position", "depth", "object-index", "material-index"), samples=1)
+def through_the_centre_of_a_pixel():
+    """Of one ray, so that there is no noise."""
+    room()
+    with_indices(ball(diffuse()), box(diffuse(), (1.5, 0, 0.5), (0.5, 0.5, 0.5)))
+
+
 @scene(passes=DATA, samples=4, block=16)
 def behind_what_is_hardly_there():
     room()
@@ -67,6 +74,20 @@ def of_another_threshold():
     room()
     with_indices(ball(diffuse()), pane(0.3))
     bpy.context.view_layer.pass_alpha_threshold = 0.2
+
+
+@scene(passes=("position", "depth", "object-index"), samples=4)
+def of_holes():
+    """Before a surface, and before the sky: there is nothing there."""
+    made, tree, output = material("Holes")
+    holes = add(tree, "MixShader", Fac=add(tree, "TexChecker", Scale=3.0).outputs["Fac"])
+    for kind, name in (("BsdfTransparent", 1), ("BsdfDiffuse", 2)):
+        tree.links.new(add(tree, kind).outputs[0], holes.inputs[name])
+    tree.links.new(holes.outputs[0], output.inputs["Surface"])
+    with_indices(sheet(made, size=4), sheet(diffuse(), size=2))
+    bpy.data.objects[-1].location.z = -1
+    sky((0.3, 0.4, 0.5))
+    camera((0.6, -5, 5))
 
 
 def materials():
