@@ -4,6 +4,7 @@
 
 import argparse
 import json
+import shutil
 import sys
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -45,20 +46,20 @@ class Interval:
 class Row:
     scene: str
     cycles: str  # its version
-    efficiency: Interval | None  # 1 / (relMSE x CPU time) of the default over Cycles'
+    efficiency: Interval | None  # 1 / (relMSE x time) of the default over Cycles'
     over_equal: Interval | None  # the same over equal counts
-    cpu: float | None  # of the default by that of Cycles, at the same camera samples; where that is long enough to tell
+    time: float  # of the default by that of Cycles, at the same camera samples
+    clock: str  # of both: cpu, or wall where Cycles' renders are too short to tell
     error: float  # relMSE of the default
     common: bool  # both are held against one reference
 
     def cells(self) -> list[str]:
         held = "one" if self.common else "its own"
         ratios = [NOT_MEASURED if r is None else str(r) for r in (self.efficiency, self.over_equal)]
-        cpu = NOT_MEASURED if self.cpu is None else f"{self.cpu:.2f}"
-        return [self.scene, *ratios, cpu, f"{self.error:.2g}", held]
+        return [self.scene, *ratios, f"{self.time:.2f}", f"{self.error:.2g}", held]
 
 
-HEADINGS = ["scene", "efficiency / Cycles'", "/ equal counts'", "CPU / Cycles'", "relMSE", "reference"]
+HEADINGS = ["scene", "efficiency / Cycles'", "/ equal counts'", "time / Cycles'", "relMSE", "reference"]
 
 
 def row(scene: str, report: dict[str, Any]) -> Row:
@@ -66,13 +67,14 @@ def row(scene: str, report: dict[str, Any]) -> Row:
     # the default is the baseline, so a ratio is another's variance x time over its
     cycles, equal, own = of["Cycles"], of[EQUAL], of[DEFAULT]
     last = own["curve"][-1], cycles["curve"][-1]
-    known = all(point["cpu"] is not None for point in last)
+    clock = report["effort_clock"]
     return Row(
         scene,
         cycles["renderer"],
         Interval.of(cycles["efficiency"]["ratio"]),
         Interval.of(equal["efficiency"]["ratio"]),
-        last[0]["cpu"]["mean"] / last[1]["cpu"]["mean"] if known else None,
+        last[0][clock]["mean"] / last[1][clock]["mean"],
+        clock,
         last[0]["relmse"]["mean"],
         any(m["common"] for m in report["models"]),
     )
@@ -82,6 +84,7 @@ def measured(scene: str, folder: Path, options: argparse.Namespace) -> Row:
     print(f"bench: {scene}", file=sys.stderr, flush=True)
     blender.run("--python-exit-code", "1", "--python", ROOT / "tools" / "bench_scenes.py", "--", folder, scene)
     out = folder / scene
+    shutil.rmtree(out, ignore_errors=True)  # an earlier one would be gone on with, not measured
     words = ["-c", DEFAULT, "-c", EQUAL, "--seeds", options.seeds, "--cycles-seeds", options.seeds]
     words += ["--max-spp", options.samples, "--resolution", options.resolution]
     script = ROOT / "blend" / "compare.py"
@@ -106,11 +109,13 @@ def main() -> int:
         parser.error(f"there is no scene {', '.join(sorted(unknown))}; there are: {' '.join(SCENES)}")
     options.out = options.out.resolve()
     options.out.mkdir(parents=True, exist_ok=True)
-    try:
-        rows = [measured(scene, options.out, options) for scene in options.scenes]
-    except blender.RenderFailed as error:
-        sys.exit(f"bench: {error}")
-    (options.out / "bench.json").write_text(json.dumps([asdict(r) for r in rows], indent=1) + "\n")
+    rows: list[Row] = []
+    for scene in options.scenes:
+        try:
+            rows.append(measured(scene, options.out, options))
+        except blender.RenderFailed as error:
+            sys.exit(f"bench: {error}")
+        (options.out / "bench.json").write_text(json.dumps([asdict(r) for r in rows], indent=1) + "\n")
     print(f"{rows[0].cycles}; {options.samples} samples per pixel, {options.resolution}, {options.seeds} seeds\n")
     print(markdown(rows))
     return 0

@@ -118,6 +118,7 @@ class Reporter {
          {"baseline", base_->configuration->name},
          {"metric", goal_.metric->name},
          {"clock", clock_ == &Clocks::cpu ? "cpu" : "wall"},
+         {"effort_clock", base_->effort == &Clocks::cpu ? "cpu" : "wall"},
          {"wall_scattered", scattered_},
          {"seeds", json::array()},
          {"checkpoints", e_.checkpoints},
@@ -153,6 +154,7 @@ class Reporter {
     scattered_ = std::any_of(measured_.begin(), measured_.end(),
                              [](const Measured& m) { return wallSpread(m) > kScatteredWall; });
     clock_ = scattered_ && cpuKnown ? &Clocks::cpu : &Clocks::wall;
+    for (Measured& m : measured_) m.effort = cpuKnown ? &Clocks::cpu : &Clocks::wall;
     time_ = 1e300;
     for (const Measured& m : measured_) {
       if (isShort(m)) continue;
@@ -429,10 +431,10 @@ class Reporter {
 
   json efficiency(const Measured& m, const Goal& goal) const {
     const auto product = [&](const Measured& x, std::span<const uint32_t> draw) -> std::optional<double> {
-      double variance = 0, cpu = 0;
-      for (const uint32_t i : draw) variance += spreadOf(x, i, *goal.metric), cpu += x.cpu(i);
+      double variance = 0, time = 0;
+      for (const uint32_t i : draw) variance += spreadOf(x, i, *goal.metric), time += x.seconds(i);
       const double n = double(draw.size());
-      return variance >= 0 ? std::optional(variance / n * (cpu / n)) : std::nullopt;  // less the floor nothing is left
+      return variance >= 0 ? std::optional(variance / n * (time / n)) : std::nullopt;  // less the floor nothing is left
     };
     const Bootstrap bootstrap(m.runs->size());
     const auto own = bootstrap.interval([&](std::span<const uint32_t> draw) { return product(m, draw); });
@@ -452,7 +454,7 @@ class Reporter {
     if (m.configuration->external) return {};
     Counts sum;
     double cpu = 0;
-    for (size_t i = 0; i < m.runs->size(); ++i) sum += (*m.runs)[i].counts, cpu += m.cpu(i);
+    for (size_t i = 0; i < m.runs->size(); ++i) sum += (*m.runs)[i].counts, cpu += (*m.runs)[i].checkpoints.back().time.cpu;
     const double samples = double(Counts::sum(sum.samples)), rays = double(sum.allRays());
     const double n = double(m.runs->size());
     json bySamples = json::object(), byRays{{"camera", double(sum.cameraRays) / n}};
@@ -557,7 +559,7 @@ class Reporter {
     return j;
   }
 
-  // Error x CPU time against the baseline's: paired t over the seeds of each block of pixels, Benjamini-Hochberg over
+  // Error x time against the baseline's: paired t over the seeds of each block of pixels, Benjamini-Hochberg over
   // the blocks. Per pixel: 0 better, 1 worse, 2 undecided.
   std::vector<uint8_t> wins(const Measured& m) const {
     const size_t n = commonSeeds_, width = static_cast<size_t>(e_.width), height = static_cast<size_t>(e_.height);
@@ -568,7 +570,7 @@ class Reporter {
       std::vector<double> difference(blocks);
       for (size_t i = 0; i < width * height; ++i)
         difference[blockOf(i)] +=
-            double(m.seeds.errors[s][i]) * m.cpu(s) - double(base_->seeds.errors[s][i]) * base_->cpu(s);
+            double(m.seeds.errors[s][i]) * m.seconds(s) - double(base_->seeds.errors[s][i]) * base_->seconds(s);
       for (size_t b = 0; b < blocks; ++b) sum[b] += difference[b], squares[b] += difference[b] * difference[b];
     }
     std::vector<double> p(blocks);
@@ -605,7 +607,7 @@ class Reporter {
         });
         ratio = Bootstrap(commonSeeds_).interval([&](std::span<const uint32_t> draw) -> std::optional<double> {
           double a = 0, b = 0, s = 0, t = 0;
-          for (const uint32_t i : draw) a += own[i], b += base[i], s += m.cpu(i), t += base_->cpu(i);
+          for (const uint32_t i : draw) a += own[i], b += base[i], s += m.seconds(i), t += base_->seconds(i);
           return b > 0 ? std::optional(std::max(a, 0.0) * s / (b * t)) : std::nullopt;
         });
       }

@@ -34,11 +34,9 @@ struct Measured {
   std::vector<std::vector<Metrics>> groups;   // of each group, of each seed; their floors are still in them
   std::vector<uint8_t> wins;  // against the baseline, 0 better, 1 worse, 2 undecided; empty: not compared
 
-  // Processor seconds of a run; wall seconds where the renderer does not tell them.
-  double cpu(size_t run) const {
-    const Checkpoint& last = (*runs)[run].checkpoints.back();
-    return last.cpuKnown ? last.time.cpu : last.time.wall;
-  }
+  double Clocks::*effort = &Clocks::cpu;  // in what products of error and time are told: one clock for all that are compared
+
+  double seconds(size_t run) const { return (*runs)[run].checkpoints.back().time.*effort; }
 };
 
 // Of configuration k; `wins` is left empty. Throws Error(kCancelled) where it has fewer than two runs.

@@ -240,7 +240,7 @@ def full():
             "auto is biased on plate 1: it will not get below a relMSE of about 0.00015.",
             "Cycles does not reach the target within 64 samples per pixel.",
         ],
-        "baseline": "equal", "metric": "relmse", "clock": "wall", "wall_scattered": False, "seeds": [*range(1, 17)], "checkpoints": CHECKPOINTS, "width": WIDTH, "height": HEIGHT,
+        "baseline": "equal", "metric": "relmse", "clock": "wall", "effort_clock": "cpu", "wall_scattered": False, "seeds": [*range(1, 17)], "checkpoints": CHECKPOINTS, "width": WIDTH, "height": HEIGHT,
         "metrics": [
             metric("mse", "MSE", "mean (x − r)²", None, True),
             metric("relmse", "relMSE", "mean (x − r)² / (r² + ε)", 0.01, True),

@@ -512,6 +512,26 @@ class Converge(CommandTest):
         self.assertEqual((report["clock"], report["wall_scattered"]), ("wall", True))
         self.assertRegex(" ".join(report["finding"]), r"scattered by more than 15 %.* not every renderer .* rough")
 
+    def test_products_are_of_one_clock(self):
+        """Processor time of two threads is twice the wall time that a program tells which does not know its own."""
+        path = self.manifest(seeds=3)
+        _, known = self.quick("--external", path)
+        manifest = json.loads(path.read_text())
+        for run in manifest["runs"]:
+            del run["cpu"]
+        path.write_text(json.dumps(manifest))
+        _, unknown = self.quick("--external", path)
+        self.assertEqual((known["effort_clock"], unknown["effort_clock"]), ("cpu", "wall"))
+        for report, clock in ((known, "cpu"), (unknown, "wall")):
+            for c in report["configurations"]:
+                product = c["efficiency"]["variance_x_seconds"]
+                if product is None or report["metric"] != "relmse":
+                    continue
+                variance = product["mean"] / c["curve"][-1][clock]["mean"]
+                other = next(o for o in known["configurations"] if o["name"] == c["name"])
+                same = other["efficiency"]["variance_x_seconds"]["mean"] / other["curve"][-1]["cpu"]["mean"]
+                self.assertAlmostEqual(variance / same, 1, delta=0.3, msg=(c["name"], clock))
+
     def test_mistakes_of_a_manifest_are_named(self):
         path = self.manifest(seeds=2)
         right = json.loads(path.read_text())

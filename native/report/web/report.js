@@ -7,6 +7,7 @@
   const configurations = report.configurations;
   const baseline = configurations.find((c) => c.name === report.baseline) || configurations[0];
   const clock = report.clock === "cpu" ? "CPU" : "wall"; // that times and ratios are of
+  const effort = report.effort_clock === "wall" ? "wall" : "CPU"; // that products with errors are of
   const product = report.metric === "relmse" ? "Variance" : "Error";
   const known = (x) => x !== null && x !== undefined;
   const filled = (list) => Array.isArray(list) && list.length > 0;
@@ -450,13 +451,13 @@
     const efficiencyRows = others((c) => c.efficiency && c.efficiency.ratio);
     return section("target", "Who reaches the target",
       first ? read(`The target is ${metricLabel(report.metric)} ≤ ${brief(target)}. Ratios are to the ${clock} time of ${baseline.name} with seeds paired: 0.5 means half the time.${report.clock === "cpu" ? " Processor time is taken, since the wall times of equal runs scattered too much on this machine." : ""} ${product} × time compares the same without a target.`) : read(`${product} × time: the smaller, the sooner any quality is reached.`),
-      table("time to the target", [["Configuration"], ["Seconds to target", "number"], ["Ratio of times", "number"], ["Verdict", "word-column"], [`${product} × CPU seconds`, "number"], ["Ratio", "number"]], rows),
+      table("time to the target", [["Configuration"], ["Seconds to target", "number"], ["Ratio of times", "number"], ["Verdict", "word-column"], [`${product} × ${effort} seconds`, "number"], ["Ratio", "number"]], rows),
       timeRows.length || efficiencyRows.length ? [
         h("h3", {}, "The ratios drawn"),
         read("Dots are estimates, bars 95 % intervals. A bar that crosses the line at 1 is a tie, drawn grey."),
         h("div", { class: "pair" },
           forest(`Time to the target, over that of ${baseline.name}`, "ratios of the times to the target", "time-to-target", timeRows),
-          forest(`${product} × CPU seconds, over those of ${baseline.name}`, "ratios of variance times seconds", "efficiency", efficiencyRows)),
+          forest(`${product} × ${effort} seconds, over those of ${baseline.name}`, "ratios of variance times seconds", "efficiency", efficiencyRows)),
       ] : null);
   }
 
@@ -910,7 +911,7 @@
     const looks = { better: `rgba(var(--better),0.8)`, worse: `rgba(var(--worse),0.8)`, undecided: `rgba(128,128,128,0.25)` };
     const wins = winners.length ? [
       h("h3", {}, `Pixels that gain and lose against ${baseline.name}`),
-      read(`relMSE × CPU time in blocks of 4 × 4 pixels, counted only where the difference is significant (Benjamini–Hochberg at 5 %).${
+      read(`relMSE × ${effort} time in blocks of 4 × 4 pixels, counted only where the difference is significant (Benjamini–Hochberg at 5 %).${
         (report.images || []).some((image) => image.kind === "classes") ? " Where these pixels are is shown by the maps among the images." : ""}`),
       table("pixels that gain and lose", [["Configuration"], ["Better", "number"], ["Worse", "number"], ["Undecided", "number"], [""]],
         winners.map((c) => [named(c), percent(c.wins.better), percent(c.wins.worse), percent(c.wins.undecided),
@@ -933,7 +934,7 @@
     });
     const groups = tables.some(known) ? [
       h("h3", {}, "Parts of the image"),
-      read(`The ratio of each part’s relMSE × CPU time to that of ${baseline.name} in the same part: blue is less, orange is more, and a tie is left without colour.`),
+      read(`The ratio of each part’s relMSE × ${effort} time to that of ${baseline.name} in the same part: blue is less, orange is more, and a tie is left without colour.`),
       tables,
     ] : null;
     return section("where", "Where does it help", wins, groups);
