@@ -82,7 +82,7 @@ def row(scene: str, report: dict[str, Any]) -> Row:
 
 def measured(scene: str, folder: Path, options: argparse.Namespace) -> Row:
     print(f"bench: {scene}", file=sys.stderr, flush=True)
-    blender.run("--python-exit-code", "1", "--python", ROOT / "tools" / "bench_scenes.py", "--", folder, scene)
+    blender.run("--python-exit-code", "1", "--python", ROOT / "blend" / "bench_scenes.py", "--", folder, scene)
     out = folder / scene
     shutil.rmtree(out, ignore_errors=True)  # an earlier one would be gone on with, not measured
     words = ["-c", DEFAULT, "-c", EQUAL, "--seeds", options.seeds, "--cycles-seeds", options.seeds]

@@ -376,19 +376,20 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     // Light of an emitter, whose density is in p.
     const bool otherwise = kGeneral && lit.any;
     const TechniqueMask own = sharp ? maskOf(t) : kAny;
+    float counted = 0;  // and the one that Cycles counts
     const auto addLight = [&](Rgb radiance, uint8_t visibility) {
       if (sharp || !(otherwise || moved > 0)) {
         add(t, own, ahead, f, radiance, p, visibility, set);
         return;
       }
-      const float byLight = lit.share(lit.density, p[kLight], s.strength());
+      const float byLight = lit.share(lit.density, counted, s.strength());
       if (moved > 0) {  // what light samples see from elsewhere is theirs alone
         if (t == kLight)
           add(t, kByLight, ahead, otherwise ? lit.same : f, radiance * byLight, p, visibility, set);
         else
-          add(t, kBySurface, ahead, lit.bySurface(f, p[kLight], s.strength()), radiance, p, visibility, set);
+          add(t, kBySurface, ahead, lit.bySurface(f, counted, s.strength()), radiance, p, visibility, set);
       } else {
-        add(t, kAny, ahead, lit.blended(f, p[kLight], s.strength()), radiance, p, visibility, set);
+        add(t, kAny, ahead, lit.blended(f, counted, s.strength()), radiance, p, visibility, set);
       }
       if (t == kLight && otherwise) add(t, kByLight, !ahead, lit.other, radiance * byLight, p, visibility, set);
     };
@@ -452,7 +453,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
           note(0, total(each), alone, maskOf(kLight), set);
         }
       } else {
-        p[kLight] = l.pdf;
+        p[kLight] = l.pdf, counted = l.counted;
         addLight(radiance, l.visibility);
       }
       continue;
@@ -485,7 +486,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     const Hit hit = trace<N, K>(world, ray, key, seenThrough, [&](float tMax, bool escaped) {
       const auto meet = [&](const EmitterHit& e) {
         if (isHidden(e.pdf)) return;
-        p[kLight] = e.pdf;
+        p[kLight] = e.pdf, counted = e.counted;
         addLight(kGeneral ? e.radiance * seenThrough : e.radiance, e.visibility);
       };
       world.emitters.along(ray, tMax, escaped, static_cast<int>(plan.vertex), &view, meet,
@@ -495,7 +496,9 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     const Shape& shape = world.geometry.shapes[hit.shape];
     const Material& m = world.scene.materials[static_cast<size_t>(shape.material)];
     if (!isBlack(m.emission.value)) {
-      p[kLight] = world.emitters.trianglePdf(view, world.geometry.placements[hit.placement], hit, d, ray.path.time);
+      const Emitters::Densities found =
+          world.emitters.trianglePdf(view, world.geometry.placements[hit.placement], hit, d, ray.path.time);
+      p[kLight] = found.pdf, counted = found.counted;
       Rgb radiance = interact<N, K>(world.scene, world.geometry, ray, hit).emission;
       if constexpr (kGeneral) radiance *= seenThrough;
       if (!isHidden(p[kLight])) addLight(radiance, world.geometry.placements[hit.placement].visibility);

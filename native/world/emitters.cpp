@@ -250,6 +250,7 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Env
     if (environment.tabulated()) skyAhead_ = &environment;
   }
 
+  double area = 0;  // of all triangles
   TriangleLuminance luminances(scene);
   std::vector<std::vector<float>> ofShape(geometry.shapes.size());  // of its triangles, whatever its placements
   for (uint32_t p = 0; p < geometry.placements.size(); ++p) {
@@ -277,6 +278,7 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Env
         of.twoSided = true;
         of.intensity = finiteOf(0.5 * double(length(n)) * double(strength[t]));
         of.power = 2 * kPif * of.intensity;
+        area += 0.5 * double(length(n));
         emissive_.push_back({p, s, t});
         bounds.push_back(of);
       }
@@ -285,6 +287,13 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Env
   triangles_ = emissive_.size();
   shared_ |= triangles_ > 0;
   tree_ = LightTree(bounds);
+  const bool evenly = std::ranges::any_of(
+      scene.materials, [](const Material& m) { return !m.closures.empty() && m.closures.front().version == 3; });
+  if (evenly) {  // half of its samples are of lamps, where there are triangles, too
+    const float share = area > 0 && !lamps_.empty() ? 0.5f : 1;
+    if (!lamps_.empty()) evenLamp_ = share / static_cast<float>(lamps_.size());
+    if (area > 0) evenArea_ = static_cast<float>(double(share) / area);
+  }
   if (finite_.size() <= kFew) return;
   std::vector<SphereAccel::Sphere> spheres;
   for (const Finite& l : finite_) spheres.push_back({l.center, std::sqrt(l.radius2)});
@@ -373,7 +382,7 @@ void Emitters::look(LightSample& s, Vec3f from, int bounces) const {
   if (s.sky.sky == nullptr) return;
   const Environment::Look look = s.sky.sky->look(s.sky, {from, false, bounces});
   s.radiance = look.radiance;
-  s.pdf *= look.pdf;
+  s.pdf *= look.pdf, s.counted *= look.pdf;
   s.sky.sky = nullptr;
 }
 
@@ -398,6 +407,7 @@ LightSample Emitters::sample(Vec3f from, const LightChoice& choice, int bounces,
     const float cosArea = std::abs(dot(s.direction, n)) * 0.5f;
     if (!(cosArea > 0)) return s;
     s.pdf = choice.probability * t2 / cosArea;
+    s.counted = evenArea_ > 0 ? evenArea_ * length(n) * 0.5f * t2 / cosArea : s.pdf;
     const ColorInput& emission = scene_.materials[static_cast<size_t>(shape.material)].emission;
     s.radiance = emission.value;
     if (emission.result >= 0) {
@@ -495,6 +505,7 @@ LightSample Emitters::sample(Vec3f from, const LightChoice& choice, int bounces,
     }
   }
   if (lamp.light != nullptr && s.pdf > 0) s.radiance *= factor(lamp, from, s.direction, s.distance, bounces);
+  s.counted = s.pdf * (evenLamp_ > 0 ? evenLamp_ : choice.probability);
   s.pdf *= choice.probability;
   s.visibility = lamp.visibility;
   s.shadow = lamp.shadow;
@@ -579,20 +590,23 @@ bool Emitters::meets(uint32_t index, const Ray& ray, float tMax, int bounces, co
   }
   if (lamp.light != nullptr) hit.radiance *= factor(lamp, ray.origin, d, t, bounces);
   hit.pdf = pdf > 0 && view != nullptr ? pdf * tree_.probability(*view, index) : 0;
+  hit.counted = evenLamp_ > 0 && hit.pdf > 0 ? pdf * evenLamp_ : hit.pdf;
   hit.visibility = lamp.visibility;
   hit.sky = lamp.kind == Kind::kEnvironment;
   return true;
 }
 
-float Emitters::trianglePdf(const LightView& view, const Placement& p, const Hit& hit, Vec3f direction,
-                            float time) const {
+Emitters::Densities Emitters::trianglePdf(const LightView& view, const Placement& p, const Hit& hit, Vec3f direction,
+                                          float time) const {
   const Shape& shape = geometry_.shapes[hit.shape];
-  if (shape.strands != nullptr) return 0;
+  if (shape.strands != nullptr) return {};
   const auto [a, b, c] = Geometry::corners(p, shape, hit.triangle, time);
-  const float cosArea = std::abs(dot(direction, cross(b - a, c - a))) * 0.5f;
-  if (!(cosArea > 0)) return 0;
+  const Vec3f n = cross(b - a, c - a);
+  const float cosArea = std::abs(dot(direction, n)) * 0.5f;
+  if (!(cosArea > 0)) return {};
   const auto emitter = static_cast<uint32_t>(lamps_.size()) + p.firstEmitter + shape.emitterOffset + hit.triangle;
-  return tree_.probability(view, emitter) * hit.t * hit.t / cosArea;
+  const float byArea = hit.t * hit.t / cosArea, pdf = tree_.probability(view, emitter) * byArea;
+  return {pdf, evenArea_ > 0 ? evenArea_ * length(n) * 0.5f * byArea : pdf};
 }
 
 }  // namespace wardmis

@@ -21,6 +21,7 @@ struct LightSample {
   Rgb radiance{0, 0, 0};     // arriving, without occlusion; of a delta light: irradiance facing it
   float pdf =
       0;  // per solid angle, the choice of the emitter included; of a delta light: of the choice; 0: nothing arrives
+  float counted = 0;       // the density that Cycles weighs it by against samples of surfaces
   Environment::Place sky;  // of an environment: radiance and density are still to be looked up there
   bool exclusive = false;  // no other technique meets this emitter: a delta light, or one without shadows
   bool shadow = true;      // occluders count
@@ -41,6 +42,7 @@ struct LightChoice {
 struct EmitterHit {
   Rgb radiance{0, 0, 0};
   float pdf = 0;  // density of the light technique at this direction, for this emitter; 0 where it does not sample it
+  float counted = 0;  // as of a LightSample
   uint8_t visibility = kSeenByAll;
   bool sky = false;  // a world's, else a light's
 };
@@ -81,9 +83,12 @@ class Emitters {
   void along(const Ray& ray, float tMax, bool escaped, int bounces, const LightView* view, F&& f,
              const Environment::Place& ahead = {}) const;
 
-  // The emissive triangle that was hit.
-  float trianglePdf(const LightView& view, const Placement& p, const Hit& hit, Vec3f direction,
-                    float time = kMiddle) const;
+  // Of the emissive triangle that was hit, the densities that an EmitterHit has.
+  struct Densities {
+    float pdf = 0, counted = 0;
+  };
+  Densities trianglePdf(const LightView& view, const Placement& p, const Hit& hit, Vec3f direction,
+                        float time = kMiddle) const;
 
  private:
   enum class Kind : uint8_t { kArea, kFacingDisk, kSphere, kDeltaPoint, kDeltaSun, kSunCone, kSunDisk, kEnvironment };
@@ -141,6 +146,9 @@ class Emitters {
   SphereAccel spheres_;               // of finite_, where there are more
   std::vector<uint32_t> infinite_;    // indices of suns and skies
   const Environment* skyAhead_ = nullptr;
+  // What Cycles 3.4 picks from without asking where: a lamp, and a part of the triangles' area. 0: it is counted as
+  // here.
+  float evenLamp_ = 0, evenArea_ = 0;
   bool shared_ = false, exclusive_ = false, sky_ = false, strands_ = false;
   uint64_t triangles_ = 0;
 };

@@ -62,5 +62,37 @@ TEST(Emitters, RaysMeetWhatSamplesAimAt) {
   }
 }
 
+// Cycles 3.4 picks lamps evenly and weighs them so against samples of surfaces, wherever ours are drawn; others by what
+// they send, as here.
+TEST(Emitters, AreCountedAsCyclesPicksThem) {
+  for (const int version : {3, 5}) {
+    Scene scene;
+    Light near = lampOf(LightType::kPoint, {0, 0, 1}), far = lampOf(LightType::kPoint, {0, 0, 50});
+    near.radius = far.radius = 0.1f;
+    scene.lights = {near, far};
+    Material material;
+    Closure closure;
+    closure.version = static_cast<uint8_t>(version);
+    material.closures = {closure};
+    scene.materials = {material};
+    Geometry geometry(scene);
+    const std::vector<Environment> skies;
+    const Emitters emitters(scene, geometry, skies);
+    const LightView view = emitters.view({0, 0, 0}, {0, 0, 1}, 1);
+    Stream random(1, 2);
+    for (int k = 0; k < 100; ++k) {
+      const auto u = random.square();
+      const LightChoice choice = emitters.choose(view, {u.x, static_cast<float>(u.y)});
+      const LightSample s = emitters.sample({0, 0, 0}, choice);
+      const float expected = version == 3 ? s.pdf / choice.probability / 2 : s.pdf;
+      EXPECT_NEAR(s.counted / expected, 1, 1e-5);
+      Ray ray;
+      ray.origin = {0, 0, 0}, ray.direction = s.direction, ray.kind = kSeenByDiffuse;
+      emitters.along(ray, 1.001f * s.distance, false, 0, &view,
+                     [&](const EmitterHit& hit) { EXPECT_EQ(hit.counted == hit.pdf, version != 3); });
+    }
+  }
+}
+
 }  // namespace
 }  // namespace wardmis

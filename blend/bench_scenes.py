@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The scenes of ./dev bench, in Blender: `blender --background --addons wardmis --python tools/bench_scenes.py -- DIR NAME...`
+"""The scenes of ./dev bench, in Blender: `blender --background --addons wardmis --python blend/bench_scenes.py -- DIR NAME...`
 
 Those of blend/ as they are or with one thing changed, and rooms of shaders that both renderers have alike."""
 
@@ -10,8 +10,8 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT / "blend")]
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE)]
 
 from parts import (  # noqa: E402
     add_area,
@@ -35,7 +35,7 @@ def main(folder, names):
 
 
 def opened(name, integrator="path"):
-    bpy.ops.wm.open_mainfile(filepath=str(ROOT / "blend" / f"{name}.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(HERE / f"{name}.blend"))
     bpy.context.scene.wardmis.integrator = integrator
 
 
