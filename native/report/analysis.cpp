@@ -454,7 +454,8 @@ class Reporter {
     if (m.configuration->external) return {};
     Counts sum;
     double cpu = 0;
-    for (size_t i = 0; i < m.runs->size(); ++i) sum += (*m.runs)[i].counts, cpu += (*m.runs)[i].checkpoints.back().time.cpu;
+    for (size_t i = 0; i < m.runs->size(); ++i)
+      sum += (*m.runs)[i].counts, cpu += (*m.runs)[i].checkpoints.back().time.cpu;
     const double samples = double(Counts::sum(sum.samples)), rays = double(sum.allRays());
     const double n = double(m.runs->size());
     json bySamples = json::object(), byRays{{"camera", double(sum.cameraRays) / n}};
