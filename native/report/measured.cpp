@@ -122,7 +122,8 @@ Measured measure(const Experiment& e, size_t k, const std::vector<Group>& groups
     std::vector<Metrics>& each = m.groups.emplace_back();
     for (const RgbImage& image : images) each.push_back(compareImages(partOf(image, g), reference));
   }
-  m.seeds = seedStatistics(images, *m.reference, m.runs->front().checkpoints.back().spp);
+  const bool another = m.configuration->external && m.configuration->common;
+  m.seeds = seedStatistics(images, *m.reference, m.runs->front().checkpoints.back().spp, another ? kParity : kRounding);
   m.rmsError = rms(m.seeds.errors);
   m.first = std::move(images[0]);
   return m;

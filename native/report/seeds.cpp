@@ -12,7 +12,6 @@
 namespace wardmis {
 namespace {
 
-constexpr double kRounding = 1e-6;  // of a value: images are floats, and renderers add up in floats
 constexpr double kUnsureSlope = 1;  // width of an interval that says nothing
 constexpr double kByTime = 0.5;     // a slope so much nearer to -1 against samples is one of the time
 
@@ -51,7 +50,7 @@ void spreadOverPixels(BiasTest& test, const std::vector<double>& z, int width, i
           z[static_cast<size_t>(y / kBlock) * blocksAcross(width) + static_cast<size_t>(x / kBlock)]);
 }
 
-BiasTest testBias(const std::vector<RgbImage>& images, const Reference& reference, uint32_t spp) {
+BiasTest testBias(const std::vector<RgbImage>& images, const Reference& reference, uint32_t spp, double exactness) {
   const double n = double(images.size());
   const RgbImage& r = reference.image;
   const int w = r.width, h = r.height;
@@ -85,7 +84,7 @@ BiasTest testBias(const std::vector<RgbImage>& images, const Reference& referenc
   // the seeds' spread and the reference's own, added: Student's t with the seeds' degrees of freedom, which is careful
   const auto tOf = [&](double s, double q, double extra, double value) {
     const double mean = s / n, variance = std::max(0.0, q / n - mean * mean) / (n - 1) + extra;
-    return mean == 0 ? 0 : mean / std::sqrt(variance + square(kRounding * value));
+    return mean == 0 ? 0 : mean / std::sqrt(variance + square(exactness * value));
   };
   BiasTest test;
   test.chanceKnown = reference.known() && samples > 0;
@@ -115,7 +114,8 @@ BiasTest testBias(const std::vector<RgbImage>& images, const Reference& referenc
 
 }  // namespace
 
-SeedStatistics seedStatistics(const std::vector<RgbImage>& images, const Reference& known, uint32_t spp) {
+SeedStatistics seedStatistics(const std::vector<RgbImage>& images, const Reference& known, uint32_t spp,
+                              double exactness) {
   const RgbImage& reference = known.image;
   const size_t values = reference.rgb.size();
   const double n = double(images.size());
@@ -164,7 +164,7 @@ SeedStatistics seedStatistics(const std::vector<RgbImage>& images, const Referen
   std::sort(seedErrors.begin(), seedErrors.end());
   if (const double median = seedErrors[seedErrors.size() / 2]; median > 0)
     s.tail.seedRatio = seedErrors.back() / median;
-  s.bias = testBias(images, known, spp);
+  s.bias = testBias(images, known, spp, exactness);
   return s;
 }
 
@@ -180,16 +180,16 @@ BiasTest compareConverged(const Reference& a, const Reference& b) {
   std::vector<double> z(difference.size());
   test.blocks = difference.size();
   test.threshold = sidak(kBiasLevel, test.blocks);
-  double sum = 0, squares = 0;
+  double sum = 0, squares = 0, all = 0;
   for (size_t k = 0; k < z.size(); ++k) {
-    const double withRounding = variance[k] + square(kRounding * value[k]);
-    z[k] = difference[k] == 0 ? 0 : difference[k] / std::sqrt(withRounding);
+    const double both = variance[k] + square(kParity * value[k]);
+    z[k] = difference[k] == 0 ? 0 : difference[k] / std::sqrt(both);
     const double p = pOfNormal(z[k]);
     test.smallestP = std::min(test.smallestP, p);
     test.failed += p < test.threshold ? 1 : 0;
-    sum += difference[k], squares += withRounding;
+    sum += difference[k], squares += variance[k], all += value[k];
   }
-  test.imageZ = sum == 0 ? 0 : sum / std::sqrt(squares);
+  test.imageZ = sum == 0 ? 0 : sum / std::sqrt(squares + square(kParity * all));  // which all blocks may have alike
   test.imageP = pOfNormal(test.imageZ);
   spreadOverPixels(test, z, w, h);
   return test;

@@ -58,9 +58,15 @@ struct SeedStatistics {
 };
 
 // At least two images of the reference's size, of `spp` samples per pixel each. Throws as compareImages does.
-SeedStatistics seedStatistics(const std::vector<RgbImage>& images, const Reference& reference, uint32_t spp);
+// exactness: what is no difference, as a standard deviation of a value.
+inline constexpr double kRounding = 1e-6;  // images are floats, and renderers add up in floats
+// Two renderers compute skies and textures by formulas of their own, which agree to 2 in 10^4 (docs/nodes.md): where
+// there is no noise, less is nothing that a picture would be used to tell.
+inline constexpr double kParity = 2e-4;
+SeedStatistics seedStatistics(const std::vector<RgbImage>& images, const Reference& reference, uint32_t spp,
+                              double exactness = kRounding);
 
-// The same test between two converged images whose variances are known (normal, not Student's).
+// The same test between two renderers' converged images, whose variances are known (normal, not Student's).
 BiasTest compareConverged(const Reference& a, const Reference& b);
 
 // Why a slope is not -1.
