@@ -18,7 +18,6 @@ from parts import (  # noqa: E402
     add_camera,
     add_mesh,
     box_mesh,
-    connect,
     emitter,
     empty_world,
     look_at,
@@ -26,6 +25,7 @@ from parts import (  # noqa: E402
     sphere_mesh,
     square,
 )
+from studio import principled  # noqa: E402
 
 
 def main(folder, names):
@@ -46,15 +46,8 @@ def begun():
     empty_world().nodes["Background"].inputs["Strength"].default_value = 0.0
 
 
-def principled(name, color, roughness):
-    material = bpy.data.materials.new(name)
-    material.use_nodes = True
-    material.node_tree.nodes.clear()
-    node = material.node_tree.nodes.new("ShaderNodeBsdfPrincipled")
-    node.inputs["Base Color"].default_value = (*color, 1)
-    node.inputs["Roughness"].default_value = roughness
-    connect(material, node)
-    return material
+def plain(name, color, roughness):
+    return principled(name, {"Base Color": (*color, 1), "Roughness": roughness})
 
 
 def box(name, center, scale, material):
@@ -65,10 +58,10 @@ def box(name, center, scale, material):
 def things():
     """A floor, and a ball and a box on it."""
     vertices, faces = square(6)
-    add_mesh("Floor", vertices, faces, principled("Floor", (0.6, 0.55, 0.5), 0.6))
+    add_mesh("Floor", vertices, faces, plain("Floor", (0.6, 0.55, 0.5), 0.6))
     vertices, faces = sphere_mesh(64, 32)
-    add_mesh("Ball", np.add(vertices, (-1.2, 0, 1)), faces, principled("Ball", (0.7, 0.2, 0.1), 0.25), smooth=True)
-    box("Box", (1.3, 0.3, 0.7), (0.7, 0.7, 0.7), principled("Box", (0.2, 0.4, 0.7), 0.4))
+    add_mesh("Ball", np.add(vertices, (-1.2, 0, 1)), faces, plain("Ball", (0.7, 0.2, 0.1), 0.25), smooth=True)
+    box("Box", (1.3, 0.3, 0.7), (0.7, 0.7, 0.7), plain("Box", (0.2, 0.4, 0.7), 0.4))
 
 
 def veach_mesh_lights():
@@ -87,7 +80,7 @@ def door():
     """A room without a lamp, lit through the door of another."""
     begun()
     things()
-    wall = principled("Wall", (0.7, 0.7, 0.7), 0.8)
+    wall = plain("Wall", (0.7, 0.7, 0.7), 0.8)
     for name, center, scale in (
         ("Back", (0, 4, 2), (6, 0.1, 2)),
         ("Left", (-6, 0, 2), (0.1, 6, 2)),

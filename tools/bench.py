@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Error and time of the default beside Cycles', scene by scene, both in one run: each scene is compared as by
-./dev compare, whose report has the figures. Run by ./dev bench."""
+./dev compare, whose report has the figures. Run by ./dev bench scenes."""
 
 import argparse
 import json

@@ -77,9 +77,10 @@ std::vector<Picture> gallery(const Experiment& e, const std::vector<Measured>& m
     const std::string remark = configurations[k]["wins"]["text"];
     all.push_back(classesPicture(
         {c.name + "/wins", c.name + " or " + base.configuration->name, "map", c.name,
-         fmt::format("Where relMSE × CPU time is less than with {}: blocks of {} × {} pixels, paired t-tests "
+         fmt::format("Where relMSE × {} time is less than with {}: blocks of {} × {} pixels, paired t-tests "
                      "over the seeds, false discoveries at most 5 %.{}{}",
-                     base.configuration->name, kWinBlock, kWinBlock, remark.empty() ? "" : " ", remark)},
+                     m.effort == &Clocks::cpu ? "CPU" : "wall", base.configuration->name, kWinBlock, kWinBlock,
+                     remark.empty() ? "" : " ", remark)},
         m.wins, w, h,
         {{c.name + " is better", "#0072B2"},
          {base.configuration->name + " is better", "#D55E00"},

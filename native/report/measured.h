@@ -34,8 +34,7 @@ struct Measured {
   std::vector<std::vector<Metrics>> groups;   // of each group, of each seed; their floors are still in them
   std::vector<uint8_t> wins;  // against the baseline, 0 better, 1 worse, 2 undecided; empty: not compared
 
-  double Clocks::*effort =
-      &Clocks::cpu;  // in what products of error and time are told: one clock for all that are compared
+  double Clocks::*effort = &Clocks::cpu;  // of products of error and time: one clock for all that are compared
 
   double seconds(size_t run) const { return (*runs)[run].checkpoints.back().time.*effort; }
 };
