@@ -25,9 +25,9 @@ inline float tableRoughness(const Lobe& l) { return std::sqrt(std::sqrt(l.ax * l
 // Cycles makes some facets no smoother.
 inline void atLeastRough(Lobe& l) { l.ax = std::max(l.ax, 1e-4f), l.ay = std::max(l.ay, 1e-4f); }
 
-// Hands on a lobe that gives something; rough ones below Cycles' threshold as perfectly smooth.
+// Hands on a lobe that gives something; rough ones below Cycles' threshold as perfectly smooth. Changes it.
 template <class Add>
-inline void addLobe(int version, Lobe l, Add&& add) {
+inline void addLobe(int version, Lobe& l, Add&& add) {
   const auto gives = [](Rgb w) { return meanOf(w) >= kLeastWeight; };
   if (!gives(l.weight) && !(isGlass(l.kind) && gives(l.through))) return;
   bool smooth = l.ax * l.ay <= (version == 3 ? 1e-7f : 2e-10f);
@@ -188,10 +188,9 @@ inline void addGlass(int version, Glossy distribution, Rgb weight, Rgb color, fl
 template <class Add>
 inline void addRefraction(int version, Glossy distribution, Rgb weight, float alpha, float eta, Add&& add) {
   const bool beckmann = distribution == Glossy::kBeckmann;
-  addLobe(
-      version,
-      refractionLobe(version, beckmann ? LobeKind::kBeckmannRefraction : LobeKind::kGgxRefraction, weight, alpha, eta),
-      add);
+  Lobe l =
+      refractionLobe(version, beckmann ? LobeKind::kBeckmannRefraction : LobeKind::kGgxRefraction, weight, alpha, eta);
+  addLobe(version, l, add);
 }
 
 // Velvet (3.4, and the Ashikhmin sheen since), sigma in [0, 1].

@@ -391,6 +391,12 @@ SampleDensities<T> sampleDensities(const Lobe& l, Vec3<T> wi, Vec3<T> wo, T pdf)
   return {pdf, alike / (T(1) + microfacetSurplus<kBeckmann>(wo, ax, ay))};
 }
 
+// Whether all of that is as of any lobe: samples of it and of lights bring evaluate(), and count its density.
+constexpr bool isPlain(const Lobe& l) {
+  return l.kind != LobeKind::kClearcoat && l.kind != LobeKind::kAshikhminShirley && !isOfBeckmann(l.kind) &&
+         !l.unseenFacets && !l.refractsUp;
+}
+
 // alone: Cycles does not ask the lobe itself what else it has along such a sample.
 template <class T>
 struct Stray {

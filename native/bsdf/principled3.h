@@ -70,10 +70,9 @@ inline void addGlass3(const Principled3& p, Rgb weight, float cosThetaO, Add&& a
   l.fresnel = Fresnel::kBlended, l.passColor = PassColor::kPale, l.f0 = tint, l.eta = eta;
   addLobe(3, l, add);
   const float through = p.multiscatter ? p.roughness : 1 - (1 - p.roughness) * (1 - p.transmissionRoughness);
-  addLobe(3,
-          refractionLobe(3, LobeKind::kGgxRefraction, weight * p.baseColor * std::max(1e-4f, 1 - f), through * through,
-                         eta),
-          add);
+  l = refractionLobe(3, LobeKind::kGgxRefraction, weight * p.baseColor * std::max(1e-4f, 1 - f), through * through,
+                     eta);
+  addLobe(3, l, add);
 }
 
 }  // namespace detail
@@ -99,11 +98,12 @@ inline void expand(const Principled3& p, Rgb weight, float cosBase, float cosCoa
     else
       l.kind = LobeKind::kBurley, l.a = p.roughness, l.weight *= p.baseColor;
     addLobe(3, l, add);
-    l = Lobe{};
-    l.kind = LobeKind::kSchlickSheen;
-    l.weight = weight * hueOf(p.baseColor, rec709::luminance(p.baseColor, 3), p.sheenTint) *
-               (p.sheen > kLeastWeight ? p.sheen * diffuse : 0);
-    addLobe(3, l, add);
+    if (p.sheen > kLeastWeight) {
+      l = Lobe{};
+      l.kind = LobeKind::kSchlickSheen;
+      l.weight = weight * hueOf(p.baseColor, rec709::luminance(p.baseColor, 3), p.sheenTint) * (p.sheen * diffuse);
+      addLobe(3, l, add);
+    }
   }
   if (1 - glass > kLeastWeight && (p.specular > kLeastWeight || p.metallic > kLeastWeight))
     detail::addSpecular3(p, weight * (1 - glass), cosBase, add);

@@ -130,6 +130,7 @@ Material Materials::ward(const Json& extension) {
     const JsonArray list = closures->array();
     for (size_t i = 0; i < list.size(); ++i) m.closures.push_back(closure(list[i]));
     m.transparent = std::any_of(m.closures.begin(), m.closures.end(), mayBeTransparent);
+    m.constant = m.isConstant();
     m.opaqueShadow = !extension.booleanOr("transparentShadow", true);
   }
   if (program_) {

@@ -4,12 +4,12 @@
 
 #include <cstddef>
 #include <limits>
-#include <new>
 #include <numeric>
 
 #include "integrate/trace.h"
 #include "math/check.h"
 #include "math/random.h"
+#include "math/scratch.h"
 #include "math/warp.h"
 #include "mis/allocation.h"
 #include "mis/candidates.h"
@@ -37,24 +37,6 @@ struct Counts {
     cameraRays += b.cameraRays, underflows += b.underflows, rare += b.rare;
     return *this;
   }
-};
-
-// A local array whose elements are made when they are first assigned: most hits use few of them.
-template <class E, int Capacity>
-class Scratch {
- public:
-  E& operator[](int i) { return *std::launder(reinterpret_cast<E*>(storage_ + static_cast<size_t>(i) * sizeof(E))); }
-  void set(int i, const E& e) {
-    make(i, [&] { return e; });
-  }
-  // Where it is to stay, without a copy.
-  template <class F>
-  E& make(int i, F&& f) {
-    return *new (storage_ + static_cast<size_t>(i) * sizeof(E)) E(f());
-  }
-
- private:
-  alignas(E) std::byte storage_[sizeof(E) * static_cast<size_t>(Capacity)];
 };
 
 // Names of the random numbers that a vertex uses; the number's dimension is vertex * Dimensions<K>::kPerVertex + name.

@@ -75,14 +75,19 @@ Framef resolveLobes(const Scene& scene, const Material& m, const ShadedPoint& po
   surface.begin(frame, point.wo, old, old && point.path.depth == 0 && point.path.transparent == 0);
   for (const Closure& c : m.closures) {
     ClosureValues v;
-    v.weight = color(c.weight);
+    v.weight = m.constant ? c.weight.value : color(c.weight);
     if (!(maxComponent(v.weight) > 0)) continue;
     if (c.type == ClosureType::kHoldout) {
       surface.holdout += (v.weight.x + v.weight.y + v.weight.z) / 3;
       continue;
     }
-    for (size_t i = 0; i < c.colors.size(); ++i) v.colors[i] = color(c.colors[i]);
-    for (size_t i = 0; i < c.scalars.size(); ++i) v.scalars[i] = scalar(c.scalars[i]);
+    if (m.constant) {
+      for (size_t i = 0; i < c.colors.size(); ++i) v.colors[i] = c.colors[i].value;
+      for (size_t i = 0; i < c.scalars.size(); ++i) v.scalars[i] = c.scalars[i].value;
+    } else {
+      for (size_t i = 0; i < c.colors.size(); ++i) v.colors[i] = color(c.colors[i]);
+      for (size_t i = 0; i < c.scalars.size(); ++i) v.scalars[i] = scalar(c.scalars[i]);
+    }
     const bool twoAlphas = c.type == ClosureType::kWard || c.type == ClosureType::kGlossy;
     const bool anisotropic = twoAlphas                             ? v.scalars[0] != v.scalars[1]
                              : c.type == ClosureType::kPrincipled3 ? v.scalars[principled3::kAnisotropic] != 0
@@ -112,7 +117,7 @@ Framef resolveLobes(const Scene& scene, const Material& m, const ShadedPoint& po
     at[kSheenFrame] = atDiffuse;
     if (c.type == ClosureType::kPrincipled3 || c.type == ClosureType::kPrincipled) {  // whose coat has its own normal
       const Vec3f coat = normalOf(c.coatNormal, own);
-      at[kCoatFrame] = frameOf(reflecting(coat));
+      at[kCoatFrame] = frameOf(coat == told && (c.version > 3 || c.normal < 0) ? n : reflecting(coat));
       if (c.type == ClosureType::kPrincipled && told != coat) {
         const float share = std::clamp(v.scalars[principled::kCoatWeight], 0.0f, 1.0f);
         at[kSheenFrame] = frameOf(normalize(told * (1 - share) + coat * share));
@@ -120,7 +125,7 @@ Framef resolveLobes(const Scene& scene, const Material& m, const ShadedPoint& po
     }
     const ViewCosines cosines{surface.cosine(at[kBaseFrame]), surface.cosine(at[kCoatFrame]),
                               surface.cosine(at[kSheenFrame]), surface.cosine(atDiffuse)};
-    expand(c, v, cosines, point.turned, [&](Lobe lobe) {
+    expand(c, v, cosines, point.turned, [&](Lobe& lobe) {
       lobe.frame = lobe.frame == kBaseFrame && isDiffuse(lobe.kind) ? atDiffuse : at[lobe.frame];
       surface.add(lobe);
     });

@@ -14,6 +14,7 @@
 #include "bsdf/lobe.h"
 #include "bsdf/shadow_terminator.h"
 #include "math/component.h"
+#include "math/scratch.h"
 #include "mis/technique.h"
 #include "world/geometry.h"
 
@@ -32,7 +33,7 @@ struct LitOtherwise {
     uint8_t slot;
   };
   static constexpr int kMostStrays = 4;
-  Stray stray[kMostStrays];
+  Scratch<Stray, kMostStrays> stray;
   int strays = 0;
   float density = 0;  // of all lobes, wherever they may leave, times their strengths; as Cycles counts it
   bool any = false;
@@ -88,7 +89,7 @@ class LobeSurface {
   // frame: the surface's own; wo in world space, unit; mixes: see straight(); defended: no lobe is drawn less often
   // than once in nine times.
   void begin(const Framef& frame, Vec3f wo, bool mixes = false, bool defended = false) {
-    count_ = 0, frames_ = 0, mixes_ = mixes, defended_ = defended, least_ = 0;
+    count_ = 0, frames_ = 0, mixes_ = mixes, defended_ = defended, plain_ = true, least_ = 0;
     transparent = {0, 0, 0}, diffuse_ = {0, 0, 0}, holdout = 0;
     wo_ = wo;
     addFrame(frame);
@@ -97,9 +98,9 @@ class LobeSurface {
   // normal, which is not the surface's own, is in shadow; 0: it is the own one.
   uint8_t addFrame(const Framef& frame, int bump = 0) {
     const int i = std::min(frames_, kMostFrames - 1);
-    frame_[i] = frame;
+    frame_.set(i, frame);
     bump_[i] = static_cast<uint8_t>(bump);
-    if (bump > 0) ownCosine_[i] = dot(frame_[0].z, frame.z);
+    if (bump > 0) ownCosine_[i] = dot(frame_[0].z, frame.z), plain_ = false;
     frames_ = i + 1;
     return static_cast<uint8_t>(i);
   }
@@ -115,9 +116,10 @@ class LobeSurface {
     if (lobe.kind == LobeKind::kLambert && !own) {
       diffuse_ += lobe.weight;
     } else if (count_ < kMostLobes) {
-      lobe_[count_] = lobe;
+      lobe_.set(count_, lobe);
       if (!own) lobe_[count_].frame = 0;
       lobe_[count_].defended = defended_ && lobe.refractsUp;
+      plain_ = plain_ && isPlain(lobe);
       ++count_;
     }
   }
@@ -186,7 +188,7 @@ class LobeSurface {
     return std::any_of(strength_.begin(), strength_.end(), [](float s) { return s > 0; });
   }
   bool transmits() const {
-    return std::any_of(lobe_.begin(), lobe_.begin() + count_, [](const Lobe& l) { return wardmis::transmits(l.kind); });
+    return anyLobe([](const Lobe& l) { return wardmis::transmits(l.kind); });
   }
   bool delta(size_t slot) const { return delta_[slot]; }
   // The kinds of ray, of Visibility, that a technique's lobes send to the viewer's side or to the other.
@@ -235,8 +237,7 @@ class LobeSurface {
   }
   // Whether the rounding of float directions would show, as Surface has it.
   bool needsDouble(float cosThetaO) const {
-    return std::any_of(lobe_.begin(), lobe_.begin() + count_,
-                       [&](const Lobe& l) { return wardmis::needsDouble(l, cosThetaO); });
+    return anyLobe([&](const Lobe& l) { return wardmis::needsDouble(l, cosThetaO); });
   }
 
   // f cos of each technique's lobes and their densities at a direction wi, both in frame 0; ahead: it leaves on the
@@ -244,99 +245,10 @@ class LobeSurface {
   template <class T>
   void evaluate(Vec3<T> wi, Vec3<T> wo, bool ahead, std::array<Rgb, K - 1>& f, Fractions<K>& p, LitOtherwise<K>& lit,
                 FByComponent<K>* by = nullptr) const {
-    struct {
-      Rgb f;
-      float density;  // as Cycles counts it, times the strength
-      Component component;
-    } part[kMostLobes + 1];
-    struct {
-      Rgb f;
-      float pdf, counted;  // times the strength
-      int without;         // the part that is not asked there, or none
-      Component component;
-    } own[LitOtherwise<K>::kMostStrays];
-    int parts = 0;
-    const float cosine = std::max(static_cast<float>(wi.z), 0.0f) * (1 / kPi<float>);
-    (ahead ? f : lit.other)[kCosine] = diffuse_ * (cosine * left(static_cast<float>(wi.z)));
-    p[kCosine] = hasDiffuse() && ahead ? cosine : 0;
-    lit.same[kCosine] = f[kCosine];
-    lit.density = strength_[kCosine] * cosine;
-    lit.any = !ahead && hasDiffuse() && cosine > 0;
-    part[parts++] = {f[kCosine] + lit.other[kCosine], lit.density, Component::kDiffuse};
-    if (by != nullptr) [[unlikely]]
-      by->add(kCosine, Component::kDiffuse, part[0].f);
-    float drawn = ahead ? lit.density : 0, counted = drawn;  // of samples that leave there, and as Cycles has it
-    for (int i = 0; i < count_; ++i) {
-      const Lobe& l = lobe_[i];
-      if (isDelta(l.kind)) continue;
-      const Vec3<T> w = local(l, wi);
-      const bool above = w.z > T(0);
-      if (!(w.z != T(0)) || !leaves(l, above)) continue;
-      const Vec3<T> view = local(l, wo);
-      LobeValue<T> v = wardmis::evaluate(l, w, view);
-      const bool seen = v.pdf > T(0);
-      if (!seen) v = unseen(l, w, view);
-      if (!(v.pdf > T(0))) continue;
-      const SampleDensities<T> d = seen ? sampleDensities(l, w, view, v.pdf) : SampleDensities<T>{T(0), v.pdf};
-      const float strength = slot_[i] == kCosine ? 0 : strength_[slot_[i]] * share_[i],
-                  density = strength * static_cast<float>(d.counted), reached = left(static_cast<float>(w.z));
-      const Rgb value = single(v.fCos) * reached;
-      const BumpShadow shadow = bump_[l.frame] == 0 ? BumpShadow{1, 1}
-                                                    : bumpShadow(bump_[l.frame], l.kind, static_cast<float>(wi.z),
-                                                                 ownCosine_[l.frame], static_cast<float>(w.z));
-      const bool sampled = seen && above == ahead;
-      Component component{};
-      if (by != nullptr) [[unlikely]] {
-        component = componentOf(l, above);
-        if (!shadow.refused) by->add(slot_[i], component, value);
-      }
-      if (shadow.refused && lit.strays < lit.kMostStrays) {
-        // to light samples and to those of other lobes it is not there, nor is its density; its own bring theirs
-        lit.any = true;
-        if (!sampled) continue;
-        if (slot_[i] != kCosine) p[slot_[i]] += share_[i] * static_cast<float>(v.pdf);
-        if (!(density > std::numeric_limits<float>::min())) continue;
-        own[lit.strays] = {value * shadow.bySurface, density, density, -1, component};
-        lit.stray[lit.strays++].slot = slot_[i];
-        continue;
-      }
-      if (sampled) {
-        f[slot_[i]] += value * shadow.bySurface;
-        if (slot_[i] != kCosine) p[slot_[i]] += share_[i] * static_cast<float>(v.pdf);
-        drawn += strength * static_cast<float>(d.pdf), counted += density;
-        strays(l, w, view, [&](const Stray<T>& s) {
-          const float pdf = strength * static_cast<float>(s.pdf);
-          if (lit.strays == lit.kMostStrays || !(pdf > std::numeric_limits<float>::min())) return;
-          own[lit.strays] = {single(s.fCos) * reached, pdf, strength * static_cast<float>(s.counted),
-                             s.alone ? parts : -1, component};
-          lit.stray[lit.strays++].slot = slot_[i];
-        });
-      }
-      part[parts++] = {value, density, component};
-      lit.density += density;
-      (above == ahead ? lit.same : lit.other)[slot_[i]] += value * shadow.byLight;
-      lit.any = lit.any || shadow.byLight != (sampled ? shadow.bySurface : 0);
-    }
-    // a sample brings what all lobes have there, over the density that is counted for all
-    if (counted > 0 && drawn != counted) {
-      for (Rgb& value : f) value = value * (drawn / counted);
-      lit.any = true;
-    }
-    for (int k = 0; k < lit.strays; ++k) {
-      typename LitOtherwise<K>::Stray& s = lit.stray[k];
-      s.f = own[k].f * (own[k].counted / own[k].pdf), s.density = own[k].counted;
-      for (int i = 0; i < parts; ++i)
-        if (i != own[k].without) s.f += part[i].f, s.density += part[i].density;
-      const float scale = own[k].pdf / s.density;
-      s.f = s.f * scale;
-      f[s.slot] += s.f;
-      if (by != nullptr) [[unlikely]] {
-        by->add(s.slot, own[k].component, own[k].f * (own[k].counted / s.density));
-        for (int i = 0; i < parts; ++i)
-          if (i != own[k].without) by->add(s.slot, part[i].component, part[i].f * scale);
-      }
-      lit.any = true;
-    }
+    if (plain_ && by == nullptr)
+      evaluateAs<true>(wi, wo, ahead, f, p, lit, nullptr);
+    else
+      evaluateAs<false>(wi, wo, ahead, f, p, lit, by);
   }
 
   struct Sample {
@@ -373,11 +285,134 @@ class LobeSurface {
   }
 
  private:
+  struct Part {
+    Rgb f;
+    float density;  // as Cycles counts it, times the strength
+    Component component;
+  };
+  struct OwnStray {
+    Rgb f;
+    float pdf, counted;  // times the strength
+    int without;         // the part that is not asked there, or none
+    Component component;
+  };
+  // kPlain: see plain_; without passes.
+  template <bool kPlain, class T>
+  void evaluateAs(Vec3<T> wi, Vec3<T> wo, bool ahead, std::array<Rgb, K - 1>& f, Fractions<K>& p, LitOtherwise<K>& lit,
+                  FByComponent<K>* by) const {
+    Scratch<Part, kPlain ? 1 : kMostLobes + 1> part;
+    Scratch<OwnStray, LitOtherwise<K>::kMostStrays> own;
+    int parts = 0;
+    const float cosine = std::max(static_cast<float>(wi.z), 0.0f) * (1 / kPi<float>);
+    (ahead ? f : lit.other)[kCosine] = diffuse_ * (cosine * left(static_cast<float>(wi.z)));
+    p[kCosine] = hasDiffuse() && ahead ? cosine : 0;
+    lit.same[kCosine] = f[kCosine];
+    lit.density = strength_[kCosine] * cosine;
+    lit.any = !ahead && hasDiffuse() && cosine > 0;
+    if constexpr (!kPlain) {
+      part.set(parts++, {f[kCosine] + lit.other[kCosine], lit.density, Component::kDiffuse});
+      if (by != nullptr) [[unlikely]]
+        by->add(kCosine, Component::kDiffuse, part[0].f);
+    }
+    float drawn = ahead ? lit.density : 0, counted = drawn;  // of samples that leave there, and as Cycles has it
+    for (int i = 0; i < count_; ++i) {
+      const Lobe& l = lobe_[i];
+      if (isDelta(l.kind)) continue;
+      const Vec3<T> w = local(l, wi);
+      const bool above = w.z > T(0);
+      if (!(w.z != T(0)) || !leaves(l, above)) continue;
+      const Vec3<T> view = local(l, wo);
+      LobeValue<T> v = wardmis::evaluate(l, w, view);
+      const bool seen = v.pdf > T(0);
+      if constexpr (kPlain) {
+        if (!seen) continue;
+        const float strength = slot_[i] == kCosine ? 0 : strength_[slot_[i]] * share_[i],
+                    density = strength * static_cast<float>(v.pdf);
+        const Rgb value = single(v.fCos) * left(static_cast<float>(w.z));
+        lit.density += density;
+        if (above == ahead) {
+          f[slot_[i]] += value, lit.same[slot_[i]] += value;
+          if (slot_[i] != kCosine) p[slot_[i]] += share_[i] * static_cast<float>(v.pdf);
+        } else {
+          lit.other[slot_[i]] += value, lit.any = true;
+        }
+        continue;
+      }
+      if (!seen) v = unseen(l, w, view);
+      if (!(v.pdf > T(0))) continue;
+      const SampleDensities<T> d = seen ? sampleDensities(l, w, view, v.pdf) : SampleDensities<T>{T(0), v.pdf};
+      const float strength = slot_[i] == kCosine ? 0 : strength_[slot_[i]] * share_[i],
+                  density = strength * static_cast<float>(d.counted), reached = left(static_cast<float>(w.z));
+      const Rgb value = single(v.fCos) * reached;
+      const BumpShadow shadow = bump_[l.frame] == 0 ? BumpShadow{1, 1}
+                                                    : bumpShadow(bump_[l.frame], l.kind, static_cast<float>(wi.z),
+                                                                 ownCosine_[l.frame], static_cast<float>(w.z));
+      const bool sampled = seen && above == ahead;
+      Component component{};
+      if (by != nullptr) [[unlikely]] {
+        component = componentOf(l, above);
+        if (!shadow.refused) by->add(slot_[i], component, value);
+      }
+      if (shadow.refused && lit.strays < lit.kMostStrays) {
+        // to light samples and to those of other lobes it is not there, nor is its density; its own bring theirs
+        lit.any = true;
+        if (!sampled) continue;
+        if (slot_[i] != kCosine) p[slot_[i]] += share_[i] * static_cast<float>(v.pdf);
+        if (!(density > std::numeric_limits<float>::min())) continue;
+        own.set(lit.strays, {value * shadow.bySurface, density, density, -1, component});
+        lit.stray.set(lit.strays++, {{}, 0, slot_[i]});
+        continue;
+      }
+      if (sampled) {
+        f[slot_[i]] += value * shadow.bySurface;
+        if (slot_[i] != kCosine) p[slot_[i]] += share_[i] * static_cast<float>(v.pdf);
+        drawn += strength * static_cast<float>(d.pdf), counted += density;
+        strays(l, w, view, [&](const Stray<T>& s) {
+          const float pdf = strength * static_cast<float>(s.pdf);
+          if (lit.strays == lit.kMostStrays || !(pdf > std::numeric_limits<float>::min())) return;
+          own.set(lit.strays, {single(s.fCos) * reached, pdf, strength * static_cast<float>(s.counted),
+                               s.alone ? parts : -1, component});
+          lit.stray.set(lit.strays++, {{}, 0, slot_[i]});
+        });
+      }
+      part.set(parts++, {value, density, component});
+      lit.density += density;
+      (above == ahead ? lit.same : lit.other)[slot_[i]] += value * shadow.byLight;
+      lit.any = lit.any || shadow.byLight != (sampled ? shadow.bySurface : 0);
+    }
+    // a sample brings what all lobes have there, over the density that is counted for all
+    if (counted > 0 && drawn != counted) {
+      for (Rgb& value : f) value = value * (drawn / counted);
+      lit.any = true;
+    }
+    for (int k = 0; k < lit.strays; ++k) {
+      typename LitOtherwise<K>::Stray& s = lit.stray[k];
+      s.f = own[k].f * (own[k].counted / own[k].pdf), s.density = own[k].counted;
+      for (int i = 0; i < parts; ++i)
+        if (i != own[k].without) s.f += part[i].f, s.density += part[i].density;
+      const float scale = own[k].pdf / s.density;
+      s.f = s.f * scale;
+      f[s.slot] += s.f;
+      if (by != nullptr) [[unlikely]] {
+        by->add(s.slot, own[k].component, own[k].f * (own[k].counted / s.density));
+        for (int i = 0; i < parts; ++i)
+          if (i != own[k].without) by->add(s.slot, part[i].component, part[i].f * scale);
+      }
+      lit.any = true;
+    }
+  }
+
   static Component componentOf(const Lobe& l, bool ahead) {
     if (l.kind == LobeKind::kVelvet) return Component::kGlossy;  // to Cycles 3.4's passes; its rays are diffuse
     if (isMatte(l.kind)) return Component::kDiffuse;
     return ahead && !(l.passColor == PassColor::kPale && isGlass(l.kind)) ? Component::kGlossy
                                                                           : Component::kTransmission;
+  }
+  template <class Is>
+  bool anyLobe(Is&& is) const {
+    for (int i = 0; i < count_; ++i)
+      if (is(lobe_[i])) return true;
+    return false;
   }
   template <class T>
   static Rgb single(Vec3<T> v) {
@@ -430,11 +465,12 @@ class LobeSurface {
   Vec3f wo_;
   int count_, frames_;
   bool mixes_, defended_;
+  bool plain_;   // what all lobes bring is f cos, of one density, whoever finds it
   float least_;  // strength of any lobe
-  std::array<Lobe, kMostLobes> lobe_;
+  Scratch<Lobe, kMostLobes> lobe_;
   std::array<uint8_t, kMostLobes> slot_;
   std::array<float, kMostLobes> share_;
-  std::array<Framef, kMostFrames> frame_;
+  Scratch<Framef, kMostFrames> frame_;
   std::array<uint8_t, kMostFrames> bump_;
   std::array<float, kMostFrames> ownCosine_;  // of the frame's normal and the surface's own
   std::array<float, K - 1> strength_;

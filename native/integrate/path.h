@@ -20,7 +20,7 @@ Fractions<K> albedoFractions(const S& s) {
     rest -= a[l] /= sum;
     a[l] *= 0.5f;
   }
-  a[Techniques<K>::kCosine] = 0.5f * std::max(rest, 0.0f);
+  a[Techniques<K>::kCosine] = s.hasDiffuse() ? 0.5f * std::max(rest, 0.0f) : 0;
   a[Techniques<K>::kLight] = 0.5f;
   return a;
 }
@@ -45,6 +45,19 @@ Rgb estimate(const RenderScene& scene, const Sampler& sampler, const Interaction
   return estimateHit<N, float>(scene, sampler, x, plan, counts, record, more);
 }
 
+// Whether the path of a first hit's sample goes on, by a random number u: with a probability as small as its worth
+// where that is less than half of `mean`, what the hit's surface samples bring in mean of light from all around; it
+// then stands for those that do not. Paths of a faint lobe cost as much as those of a bright one, and bring little.
+template <size_t K>
+bool goesOn(Continuation<K>& c, float mean, float u) {
+  const float q = 2 * maxComponent(absolute(c.weight)) / mean;
+  if (!(q < 1)) return true;
+  if (!(u < q)) return false;
+  c.weight *= 1 / q;
+  c.scale *= 1 / q;
+  return true;
+}
+
 // Radiance reflected at the end of `first`, times its weight. index: of this path among the pixel's.
 template <uint32_t N, size_t K>
 Rgb followPath(const RenderScene& scene, const Sampler& sampler, uint32_t pixelKey, uint32_t index,
@@ -64,7 +77,8 @@ Rgb followPath(const RenderScene& scene, const Sampler& sampler, uint32_t pixelK
     const TechniqueMask mask = techniquesAt<K>(x.surface, lights, true);
     if ((mask & ~maskOf(Techniques<K>::kLight)) == 0) break;  // reflects nothing
     HitPlan<K> plan;
-    plan.fractions = restrict<K>(albedoFractions<K>(x.surface), mask);
+    plan.fractions = albedoFractions<K>(x.surface);
+    if (!lights) plan.fractions = restrict<K>(plan.fractions, mask);
     plan.samples = lights ? 2 : 1;
     plan.integrand = Integrand::kJoint;
     plan.pixelKey = pixelKey;
@@ -78,11 +92,14 @@ Rgb followPath(const RenderScene& scene, const Sampler& sampler, uint32_t pixelK
     weight *= next.weight;
     survived *= maxComponent(absolute(next.weight));
     if (vertex >= 2) {
-      const float q = std::min(0.95f, survived);
-      if (sampler.get1D(pixelKey, plan.vertex * Dimensions<K>::kPerVertex + Dimensions<K>::kRoulette, index) >= q)
-        break;
-      weight *= 1 / q;
-      survived /= q;
+      // the root: paths end later than by what survives itself, and the noise that ending brings is less (measured)
+      const float q = std::sqrt(survived);
+      if (q < 1) {
+        if (sampler.get1D(pixelKey, plan.vertex * Dimensions<K>::kPerVertex + Dimensions<K>::kRoulette, index) >= q)
+          break;
+        weight *= 1 / q;
+        survived /= q;
+      }
     }
     ray = next.ray;
     hit = next.hit;

@@ -202,10 +202,16 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
     addLight(light->direct, split->direct, seenThrough * exposure);
   if (taken != nullptr)
     for (size_t i = 0; i < K; ++i) taken[i] += static_cast<uint32_t>(counts.samples[i] - before[i]);
-  if constexpr ((N & kNeedsBounces) != 0) {
+  if ((N & kNeedsBounces) != 0 && more.count > 0) {
     const Fractions<K> n = record ? Mixture<K>(plan.fractions, plan.samples, plan.weights).n : Fractions<K>{};
+    float surfaceSamples = 0;
+    for (size_t i = 0; i < Techniques<K>::kSurface; ++i)
+      surfaceSamples += plan.fractions[i] * static_cast<float>(plan.samples);
+    const float mean = s.strength() / surfaceSamples;
+    const Sampler::Visit visit(in.sampler, pixelKey, 0, sample);
     for (int k = 0; k < more.count; ++k) {
-      const Continuation<K>& c = more.list[k];
+      Continuation<K>& c = more.list[k];
+      if (!goesOn(c, mean, visit.choice(Dimensions<K>::kRoulette, static_cast<uint32_t>(k)))) continue;
       const uint64_t rays = counts.allRays();
       const Rgb value = followPath<N, K>(world, in.sampler, pixelKey,
                                          sample * static_cast<uint32_t>(plan.samples) + static_cast<uint32_t>(k), c,

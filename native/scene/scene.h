@@ -48,6 +48,7 @@ struct Material {
   bool unlit = false;             // its emission stands for a colour that needs no light, and is none
   bool transparent = false;       // light may go straight through
   bool opaqueShadow = false;      // but no shadow ray
+  bool constant = false;          // no closure's input is looked up or from the program
   std::vector<Closure> closures;  // in place of diffuse, specular, alphas, rotation and normal; of these, then, nothing
 
   // Calls f(ColorInput&) or f(ScalarInput&) for each input; of a const material with const ones.
@@ -59,6 +60,11 @@ struct Material {
       for (auto& input : c.colors) f(input);
       for (auto& input : c.scalars) f(input);
     }
+  }
+  bool isConstant() const {
+    bool all = true;
+    forEachInput(*this, [&](const auto& input) { all = all && input.texture.texture < 0 && input.result < 0; });
+    return all;
   }
   bool hasTextures() const {
     bool any = false;

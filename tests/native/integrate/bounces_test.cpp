@@ -2,6 +2,7 @@
 // How far paths go, by kind of bounce and by lamp, where the image is known: in a closed sphere.
 #include <gtest/gtest.h>
 
+#include "integrate/path.h"
 #include "scenes.h"
 
 namespace wardmis {
@@ -33,6 +34,27 @@ bool same(const FilmBuffer& a, const FilmBuffer& b) {
   for (size_t i = 0; i < a.pixels.size(); ++i)
     if (luminance(a.mean(a.pixels[i])) != luminance(b.mean(b.pixels[i]))) return false;
   return a.pixels.size() == b.pixels.size();
+}
+
+// Roulette of a first hit's samples: those of half the mean worth and more go on as they are, of others as many as they
+// are worth, for all.
+TEST(Bounces, GoOnByTheirWorth) {
+  for (const float worth : {0.01f, 0.1f, 0.249f, 0.25f, 1.0f, 3.0f}) {
+    const int trials = 1 << 12;
+    double sum = 0;
+    int gone = 0;
+    for (int k = 0; k < trials; ++k) {
+      Continuation<3> c;
+      c.weight = {worth, 0.5f * worth, 0}, c.scale = 2;
+      if (!goesOn(c, 0.5f, (static_cast<float>(k) + 0.5f) / trials)) continue;
+      ++gone;
+      sum += double(c.weight.x);
+      EXPECT_FLOAT_EQ(c.weight.y, 0.5f * c.weight.x);
+      EXPECT_FLOAT_EQ(c.scale / 2, c.weight.x / worth);
+    }
+    EXPECT_NEAR(sum / trials, double(worth), 1e-3 * double(worth) + 1.0 / trials);
+    EXPECT_NEAR(double(gone) / trials, std::min(1.0, 4 * double(worth)), 1.0 / trials);
+  }
 }
 
 // Walls that glow by 1: 1 for the camera, and rho^i for what is reflected i times, B + 1 times at most.

@@ -2,6 +2,7 @@
 // Surfaces of many lobes in whole renders: what is known of their light, and that no choice of techniques changes it.
 #include <gtest/gtest.h>
 
+#include "integrate/lobe_surface.h"
 #include "integrate/setup.h"
 #include "scenes.h"
 
@@ -83,6 +84,54 @@ TEST(Closures, WhiteOnesVanishInAWhiteSky) {
     worldOf(scene).radiance = kWhite;
     for (Allocation a : {Allocation::kEqual, Allocation::kAuto})
       EXPECT_NEAR(meanOf(scene, settings(a)), 1, 0.005) << name;
+  }
+}
+
+// Lobes of which Cycles has nothing but f cos are asked a shorter way: it tells the same.
+TEST(LobeSurface, TheShortWayTellsTheSame) {
+  const auto lobe = [](LobeKind kind, Rgb weight) {
+    Lobe l;
+    l.kind = kind, l.weight = weight, l.ax = 0.3f, l.ay = 0.2f, l.eta = 1.5f, l.fresnel = Fresnel::kBlended;
+    l.f0 = {0.04f, 0.1f, 0.2f};
+    return l;
+  };
+  const Vec3f wo = normalize(Vec3f{0.3f, -0.5f, 0.6f});
+  LobeSurface<5> s;
+  s.begin(Framef::around({0, 0, 1}), wo);
+  for (const LobeKind kind : {LobeKind::kLambert, LobeKind::kGgx, LobeKind::kBurley, LobeKind::kTranslucent,
+                              LobeKind::kGgxGlass, LobeKind::kMirror, LobeKind::kFibres})
+    s.add(lobe(kind, {0.2f, 0.1f, 0.15f}));
+  s.finish({});
+  for (int k = 0; k < 200; ++k) {
+    const float z = 1 - 0.01f * static_cast<float>(k), phi = 2.4f * static_cast<float>(k);
+    const Vec3f wi = Vec3f{std::cos(phi), std::sin(phi), 0} * std::sqrt(std::max(0.0f, 1 - z * z)) + Vec3f{0, 0, z};
+    std::array<Rgb, 4> f[2]{};
+    Fractions<5> p[2]{};
+    LitOtherwise<5> lit[2];
+    FByComponent<5> byComponent;
+    byComponent.clear();
+    s.evaluate(wi, wo, z > 0, f[0], p[0], lit[0]);
+    s.evaluate(wi, wo, z > 0, f[1], p[1], lit[1], &byComponent);
+    EXPECT_EQ(f[0], f[1]) << z;
+    EXPECT_EQ(p[0], p[1]) << z;
+    EXPECT_EQ(lit[0].same, lit[1].same) << z;
+    EXPECT_EQ(lit[0].other, lit[1].other) << z;
+    EXPECT_EQ(lit[0].density, lit[1].density) << z;
+    EXPECT_EQ(lit[0].any, lit[1].any) << z;
+  }
+}
+
+// A material whose inputs are looked up nowhere is resolved a shorter way, too.
+TEST(Closures, ConstantMaterialsLookTheSame) {
+  for (const ClosureType type : {ClosureType::kPrincipled3, ClosureType::kPrincipled, ClosureType::kGlass}) {
+    Scene scene = ball({closure(type, {0.8f, 0.3f, 0.1f})});
+    worldOf(scene).radiance = kWhite;
+    ASSERT_TRUE(scene.materials[0].isConstant());
+    RenderSettings s = settings();
+    s.spp = 4;
+    const double slow = meanOf(scene, s);
+    scene.materials[0].constant = true;
+    EXPECT_EQ(meanOf(scene, s), slow);
   }
 }
 
