@@ -213,8 +213,10 @@ class _Render:
         arguments += ["--samples-per-hit", settings.samples_per_hit]
         if settings.stop_by == "samples":
             arguments += ["--spp", settings.samples]
-        else:
+        elif settings.stop_by == "seconds":
             arguments += ["--time", f"{settings.seconds:.6g}"]
+        else:
+            arguments += ["--target-error", f"{settings.target_error:.6g}", "--spp", settings.max_samples]
         if sharing.uses_pilot(settings):
             arguments += ["--pilot-spp", settings.pilot_samples, "--min-fraction", f"{settings.min_fraction:.6g}"]
         if render.threads_mode == "FIXED":

@@ -83,6 +83,8 @@ class WARDMIS_RENDER_PT_sampling(RenderPanel, bpy.types.Panel):
         settings, column = context.scene.wardmis, self._column()
         column.row().prop(settings, "stop_by", expand=True)
         column.prop(settings, settings.stop_by)
+        if settings.stop_by == "target_error":
+            column.prop(settings, "max_samples")
         column.separator()
         column.prop(settings, "sampler")
         row = column.row(align=True)

@@ -40,7 +40,7 @@ struct Options {
   SettingOptions settings;
   // what ends it, and its seed
   uint32_t spp = 64;
-  double seconds = 0;
+  double seconds = 0, targetError = 0;
   uint64_t seed = 0;
   int threads = 0;
 };
@@ -54,10 +54,13 @@ std::string line(const Progress& p) {
 }
 
 json event(const Progress& p) {
-  return {{"event", "progress"},    {"phase", p.pilot ? "pilot" : "render"},
-          {"samples", p.samples},   {"of", p.of > 0 ? json(p.of) : json()},
-          {"fraction", p.fraction}, {"seconds", p.seconds},
-          {"left", p.left}};
+  return {{"event", "progress"},
+          {"phase", p.pilot ? "pilot" : "render"},
+          {"samples", p.samples},
+          {"of", p.of > 0 ? json(p.of) : json()},
+          {"fraction", p.fraction},
+          {"seconds", p.seconds},
+          {"left", p.left ? json(*p.left) : json()}};
 }
 
 // `list` as --passes has it; empty: what a scene with `techniques` has. A pass that is named is there for every scene,
@@ -109,7 +112,7 @@ SampleRange rangeOf(const std::string& text, uint32_t spp) {
 int run(Options& o) {
   const auto start = Clock::now();
   RenderSettings s = o.settings.chosen();
-  s.spp = o.spp, s.seconds = o.seconds, s.seed = o.seed, s.threads = o.threads;
+  s.spp = o.spp, s.seconds = o.seconds, s.targetError = o.targetError, s.seed = o.seed, s.threads = o.threads;
   if (!o.samples.empty()) {
     s.part = rangeOf(o.samples, s.spp);
     if (s.allocation == Allocation::kAuto && s.costFrom == CostFrom::kMeasured)
@@ -147,7 +150,7 @@ int run(Options& o) {
                     {"version", WARDMIS_VERSION},
                     {"width", scene.film.x1 - scene.film.x0},
                     {"height", scene.film.y1 - scene.film.y0},
-                    {"spp", s.seconds > 0 ? json() : json(s.range().count())},
+                    {"spp", s.open() ? json() : json(s.range().count())},
                     {"passes", passes},
                     {"left_out", st.leftOut},
                     {"notes", scene.notes}});
@@ -216,6 +219,14 @@ int run(Options& o) {
     reporter.warn(fmt::format(
         "{} of {} camera samples were dropped: {} not a number, {} infinite, {} negative; the image lacks their light",
         rare.total(), st.counts.cameraRays, rare.nan, rare.infinite, rare.negative));
+  if (stopped == Stop::kNo && s.targetError > 0 && !(st.error && st.error->upper <= s.targetError))
+    reporter.warn(st.error
+                      ? fmt::format("the image's error is not yet surely below {:g}: after {} samples per pixel it is "
+                                    "about {:.2g}, and below {:.2g} with 95 % confidence; allow more (--spp, --time)",
+                                    s.targetError, film.samples, st.error->relMse, st.error->upper)
+                      : fmt::format("{} samples per pixel are too few to tell the image's error; allow 8 and more "
+                                    "(--spp, --time)",
+                                    film.samples));
   if (stopped == Stop::kKeep)
     throw Error(ExitCode::kCancelled,
                 fmt::format("cancelled after {} samples per pixel; {} {}", film.samples,
@@ -225,8 +236,10 @@ int run(Options& o) {
   reporter.event(
       {{"event", "done"}, {"path", output}, {"seconds", since(start)}, {"samples", film.samples}, {"stats", stats}});
   if (!reporter.json())
-    fmt::print("{}: {} samples per pixel, {:.2f} s (pilot {:.2f} s), {} rays\n", output, film.samples,
-               st.pilotSeconds + st.renderSeconds, st.pilotSeconds, st.counts.allRays());
+    fmt::print(
+        "{}: {} samples per pixel, {:.2f} s (pilot {:.2f} s), {} rays{}\n", output, film.samples,
+        st.pilotSeconds + st.renderSeconds, st.pilotSeconds, st.counts.allRays(),
+        st.error ? fmt::format(", error about {:.2g}, below {:.2g} with 95 %", st.error->relMse, st.error->upper) : "");
   return 0;
 }
 
@@ -244,11 +257,17 @@ Verb addRender(CLI::App& app) {
   auto* time = app.add_option("--time", o->seconds, "stop after this many seconds instead, the pilot's included")
                    ->check(between(0.001, 1e7))
                    ->excludes(spp);
+  auto* target = app.add_option("--target-error", o->targetError,
+                                "stop as soon as the relMSE (without the worst 0.1 % of the pixels), as the samples "
+                                "themselves tell it, is below this with 95 % "
+                                "confidence, at the latest after --spp samples (65536, if not given) or --time")
+                     ->check(between(1e-9, 1e3));
   app.add_option(
          "--samples", o->samples,
          "FROM..TO: of the --spp samples these alone (TO is not one of them), as a part that 'wardmis merge' adds "
          "to others")
-      ->excludes(time);
+      ->excludes(time)
+      ->excludes(target);
   app.add_option("--filter", o->filter, "pixel filter")->check(among(kFilters, {"scene"}))->capture_default_str();
   app.add_option("--seed", o->seed, "another seed, another noise")->check(wholeNumber())->capture_default_str();
   app.add_option("--threads", o->threads, "0: all; the image does not depend on it")
@@ -273,7 +292,10 @@ Verb addRender(CLI::App& app) {
       ->check(between(0, 1e6))
       ->capture_default_str();
   app.add_flag("--watch-stdin", o->watchStdin, "stop when standard input is closed");
-  return [o] { return run(*o); };
+  return [o, spp] {
+    if (o->targetError > 0 && spp->count() == 0) o->spp = 1u << 16;
+    return run(*o);
+  };
 }
 
 }  // namespace wardmis

@@ -88,12 +88,12 @@ void Reporter::info(const std::string& message) {
   tell(message);
 }
 
-void Reporter::bar(double fraction, const std::string& doing, double seconds, double left) {
+void Reporter::bar(double fraction, const std::string& doing, double seconds, std::optional<double> left) {
   if (!bar_) return;
   constexpr int kWidth = 30;
   const int full = static_cast<int>(fraction * kWidth);
-  write(stderr, fmt::format("\r[{:#<{}}{:.<{}}] {:3.0f} %  {}  {:.1f} s, {:.1f} s left\x1b[K", "", full, "",
-                            kWidth - full, 100 * fraction, doing, seconds, left));
+  write(stderr, fmt::format("\r[{:#<{}}{:.<{}}] {:3.0f} %  {}  {:.1f} s{}\x1b[K", "", full, "", kWidth - full,
+                            100 * fraction, doing, seconds, left ? fmt::format(", {:.1f} s left", *left) : ""));
   drawn_ = true;
 }
 

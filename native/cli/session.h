@@ -5,6 +5,7 @@
 #include <atomic>
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,7 @@ class Reporter {
   // Of what a file holds and the image lacks (Scene::lacking), for people: programs have it in their events. The first
   // few, since wardmis info has them all.
   void warnOfLacking(const std::vector<std::string>& lacking);
-  void bar(double fraction, const std::string& doing, double seconds, double left);
+  void bar(double fraction, const std::string& doing, double seconds, std::optional<double> left);
   void clear();  // the bar
 
  private:

@@ -16,6 +16,7 @@ json settingsJson(const RenderSettings& s, const Scene& scene) {
   json j = toJson(s);
   j.update({{"spp", s.seconds > 0 ? json() : json(s.spp)},
             {"time", s.seconds > 0 ? json(s.seconds) : json()},
+            {"target_error", s.targetError > 0 ? json(s.targetError) : json()},
             {"seed", s.seed},
             {"filter", name(scene.film.filter)},
             {"filter_width", scene.film.filterWidth}});
@@ -77,6 +78,7 @@ json statisticsJson(const std::string& path, const RenderSettings& settings, con
            {"lights", scene.lights.size()},
            {"emissive_triangles", s.emissiveTriangles}}},
          {"mean_variance", meanVariance(film)},
+         {"error", s.error ? json{{"relmse_trimmed", s.error->relMse}, {"upper", s.error->upper}} : json()},
          {"threads", s.threads},
          {"isa", clonedFor()}};
   j.update(countsJson(s.counts, s.techniqueNames));

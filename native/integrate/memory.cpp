@@ -21,7 +21,8 @@ constexpr uint64_t kDataWritten = 14 * sizeof(float), kLightWritten = 27 * sizeo
 template <size_t K>
 uint64_t bytesPerPixelWith(const RenderSettings& s, bool catchers) {
   constexpr uint64_t kFilm = sizeof(Pixel) + K * sizeof(uint32_t);
-  const uint64_t kept = kFilm + (catchers ? sizeof(CatcherPixel) : 0);
+  const uint64_t kept =
+      kFilm + (catchers ? sizeof(CatcherPixel) : 0) + (s.targetError > 0 ? ErrorEstimate::kBytesPerPixel : 0);
   const uint64_t sums = kept + (s.data ? sizeof(DataPixel) : 0) + (s.light ? sizeof(LightPixel) : 0);
   const uint64_t written = sums + kWritten<K> + (s.data ? kDataWritten : 0) + (s.light ? kLightWritten : 0) +
                            (s.part ? sums : 0);  // a part has its sums in the file, too

@@ -33,7 +33,7 @@ bool coarse(const RenderSettings& s) { return s.allocation == Allocation::kAuto;
 uint32_t pilotOf(const RenderSettings& s, uint32_t target) {
   if (!coarse(s)) return std::min(s.pilotSpp, target / 2);
   constexpr double kUsual = 64;  // samples for which pilotSpp is meant
-  const double growth = s.seconds > 0 ? 1 : std::max(1.0, std::sqrt(target / kUsual));
+  const double growth = s.open() ? 1 : std::max(1.0, std::sqrt(target / kUsual));
   const uint32_t most = target / kLeastForPilot;
   return static_cast<uint32_t>(std::min(s.pilotSpp * growth, double(most)));
 }
@@ -106,17 +106,21 @@ class Run {
   void until(uint32_t target, Pilot<K>* pilot) {
     uint32_t chunk = 1;
     const double limit = settings_.seconds * (apart_ > 0 && pilot != nullptr ? kPilotTime : 1);
-    while (film_->samples < target && !stopped()) {
+    while (film_->samples < target && !stopped() && !isGoodEnough()) {
       const double before = seconds();
       chunk = std::min(chunk, target - film_->samples);
       if (observer_.checkpoint) {
         const uint32_t next = film_->samples == 0 ? 1 : 2 * std::bit_floor(film_->samples);
         chunk = std::min(chunk, next - film_->samples);
       }
+      const bool ofImage = pilot == nullptr || apart_ == 0;
+      if (settings_.targetError > 0 && ofImage)
+        chunk = std::min(chunk, ErrorEstimate::next(film_->samples) - film_->samples);
       if (!pass(chunk, pilot)) return;
+      if (settings_.targetError > 0 && ofImage) estimate();
       const double after = seconds(), perSample = (after - before) / chunk;
       report(pilot != nullptr, 0);
-      if (pilot == nullptr || apart_ == 0) checkpoint();
+      if (ofImage) checkpoint();
       if (observer_.image && pilot == nullptr) observer_.image(*film_);
       if (limit > 0 && after + perSample > limit) return;
       // passes of about half a second: long enough to cost nothing, short enough to watch
@@ -129,6 +133,8 @@ class Run {
   // What follows is added to this film. apart: samples of a pilot on a film of its own, before the image's; each: what
   // one of these takes, in samples of the image.
   void onto(FilmBuffer& film, uint32_t apart, double each) { film_ = &film, apart_ = apart, each_ = each; }
+
+  const std::optional<EstimatedError>& error() const { return error_; }
 
   Counts counts() {
     Counts sum;
@@ -147,21 +153,37 @@ class Run {
     start_ += now() - before;
   }
 
+  void estimate() {
+    if (film_->samples != lookAt_) return;
+    lookAt_ = ErrorEstimate::next(lookAt_);
+    if (const auto error = estimate_.look(*film_)) error_ = error, lookedAt_ = film_->samples;
+  }
+  bool isGoodEnough() const { return error_ && error_->upper <= settings_.targetError; }
+
+  // How far the render is by what it is to end after: samples, of which the pilot's are some, time or error. The last
+  // is not known before there is an estimate; errors fall like 1/n.
+  double fraction(double done, double extra, double time) const {
+    const double bySamples = done / (double(countOf(settings_)) + extra),
+                 byTime = settings_.seconds > 0 ? time / settings_.seconds : 0,
+                 byError = error_ ? done / (lookedAt_ * error_->upper / settings_.targetError + extra) : 0;
+    return std::min(1.0, std::max({bySamples, byTime, byError}));
+  }
+
   // partial: samples of the running pass, in mean over the pixels.
   void report(bool pilot, double partial) {
     if (!observer_.progress) return;
     Progress p;
     p.pilot = pilot;
     p.samples = film_->samples;
-    p.of = settings_.seconds > 0 ? 0 : countOf(settings_);
+    p.of = settings_.open() ? 0 : countOf(settings_);
     p.seconds = seconds();
     const double extra = apart_ * each_, here = double(film_->samples) + partial;
     const double done = !pilot ? here + extra : apart_ > 0 ? here * each_ : here;
-    p.fraction = settings_.seconds > 0 ? std::min(1.0, p.seconds / settings_.seconds)
-                                       : done / (double(countOf(settings_)) + extra);
-    p.left = settings_.seconds > 0 ? std::max(0.0, settings_.seconds - p.seconds)
-             : p.fraction > 0      ? p.seconds * (1 - p.fraction) / p.fraction
-                                   : 0;
+    p.fraction = fraction(done, extra, p.seconds);
+    if (settings_.targetError > 0 && !error_ && settings_.seconds <= 0)
+      p.left = std::nullopt;
+    else
+      p.left = p.fraction > 0 ? p.seconds * (1 - p.fraction) / p.fraction : 0;
     observer_.progress(p);
   }
 
@@ -171,6 +193,9 @@ class Run {
   FilmBuffer* film_ = nullptr;
   uint32_t apart_ = 0;
   double each_ = 0;
+  ErrorEstimate estimate_;
+  std::optional<EstimatedError> error_;
+  uint32_t lookAt_ = ErrorEstimate::next(0), lookedAt_ = 0;
   Clocks start_;
   tbb::enumerable_thread_specific<Counts> counts_;
 };
@@ -275,6 +300,7 @@ FilmBuffer renderWith(const BuiltScene& built, const RenderSettings& settings, S
   stats.renderSeconds = time.wall - stats.pilotSeconds;
   stats.renderCpuSeconds = time.cpu - stats.pilotCpuSeconds;
   stats.counts = run.counts();
+  stats.error = run.error();
   return buffer;
 }
 

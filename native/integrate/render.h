@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "film/error_estimate.h"
 #include "film/film.h"
 #include "integrate/hit.h"
 #include "scene/scene.h"
@@ -47,6 +48,8 @@ struct RenderSettings {
   SamplerType sampler = SamplerType::kSobol;
   uint32_t spp = 64;   // camera samples per pixel in the image, the pilot's included unless it is apart (pilotApart)
   double seconds = 0;  // > 0: stop after this time instead
+  double targetError =
+      0;  // > 0: stop as soon as the image is told to be better, at the latest after all samples or the time
   std::optional<SampleRange> part;  // of the spp samples these alone; not with a time, nor measured costs
   int samplesPerHit = 3;
   uint32_t pilotSpp = 4;  // camera samples of the pilot per pixel, of `auto` per 2 x 2 pixels
@@ -63,6 +66,8 @@ struct RenderSettings {
   bool generalKernel = false;
 
   PathLimits limits() const;
+  // Whether the number of its samples is not known before.
+  bool open() const { return seconds > 0 || targetError > 0; }
   SampleRange range() const { return part.value_or(SampleRange{0, spp}); }  // without a limit of time
   Weights weightRule() const { return weights.value_or(paperWeights(allocation)); }
 };
@@ -88,6 +93,7 @@ struct Statistics {
   bool pilotKept = false;                   // its samples are part of the image
   std::vector<float> cost;                  // of a sample of each technique, that the allocation took into account
   float costOfHit = 0;                      // a share of a hit's own, in the same unit
+  std::optional<EstimatedError> error;      // the last estimate, where an error is aimed at
 };
 
 struct Clocks {
@@ -101,7 +107,8 @@ struct Progress {
   bool pilot = false;
   uint32_t samples = 0;  // complete ones of every pixel
   uint32_t of = 0;       // 0: by time
-  double fraction = 0, seconds = 0, left = 0;
+  double fraction = 0, seconds = 0;
+  std::optional<double> left;  // none: not known yet
 };
 
 enum class Stop : int { kNo = 0, kKeep, kDiscard };  // stop, keeping the image so far or not

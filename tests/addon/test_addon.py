@@ -95,7 +95,10 @@ class Settings(unittest.TestCase):
                 continue
             self.assertTrue(prop.description, prop.identifier)
             # what stops a render is shown by the name of the choice
-            self.assertIn("stop_by" if prop.identifier in {"samples", "seconds"} else f'"{prop.identifier}"', source)
+            self.assertIn(
+                "stop_by" if prop.identifier in {"samples", "seconds", "target_error"} else f'"{prop.identifier}"',
+                source,
+            )
 
 
 class Tooltips(unittest.TestCase):

@@ -250,6 +250,14 @@ class Arguments(RenderTest):
         self.assertEqual(arguments[arguments.index("--threads") + 1], "3")
         self.assertNotIn("--spp", arguments)
 
+    def test_stop_by_error(self):
+        run = self.run_blender(
+            "s = scene.wardmis\ns.stop_by, s.target_error, s.max_samples = 'target_error', 0.02, 512\n"
+        )
+        arguments = run.calls[0]["arguments"]
+        self.assertEqual(arguments[arguments.index("--target-error") + 1], "0.02")
+        self.assertEqual(arguments[arguments.index("--spp") + 1], "512")
+
     def test_bounces_reach_the_command(self):
         limits = "s.max_depth, s.max_diffuse, s.max_glossy = 6, 2, 5\n"
         more = "s.max_transmission, s.max_transparent = 1, 3\n"

@@ -62,6 +62,8 @@ class Usage(CommandTest):
             ((*render, "--spp", "0"), "--spp"),
             ((*render, "--spp", "many"), "many"),
             ((*render, "--spp", "4", "--time", "1"), "--time"),
+            ((*render, "--target-error", "0"), "--target-error"),
+            ((*render, "--target-error", "0.01", "--samples", "0..4"), "--target-error"),
             ((*render, "--allocation", "fair"), "second-moment"),
             ((*render, "--sampler", "halton"), "sobol"),
             ((*render, "--allocation", "auto", "--weights", "nonbalance"), "standard-deviation"),
@@ -405,6 +407,30 @@ class Progress(CommandTest):
         seconds = events[-1]["stats"]["seconds"]
         self.assertTrue(1.2 < seconds["pilot"] + seconds["render"] < 2.5, seconds)
         self.assertGreater(events[-1]["samples"], 0)
+        self.assertTrue(self.out.exists())
+
+    def test_target_error(self):
+        done = self.render("--target-error", "0.01", "--progress", "json")
+        events = self.events(done.stdout)
+        self.assertIsNone(events[0]["spp"])
+        progress = [event for event in events if event["event"] == "progress"]
+        self.assertTrue(all(event["of"] is None for event in progress))
+        fractions = [event["fraction"] for event in progress]
+        self.assertTrue(all(0 <= fraction <= 1 for fraction in fractions), fractions)
+        self.assertIsNone(progress[0]["left"])  # before there is an estimate
+        stats = events[-1]["stats"]
+        self.assertEqual((stats["settings"]["target_error"], stats["settings"]["spp"]), (0.01, 65536))
+        self.assertTrue(0 < stats["error"]["relmse_trimmed"] < stats["error"]["upper"] <= 0.01, stats["error"])
+        self.assertLess(stats["samples_per_pixel"], 1024)
+        done = self.render("--target-error", "0.01")
+        self.assertRegex(done.stdout, r"error about [\d.]+, below [\d.]+ with 95 %")
+
+    def test_target_error_out_of_reach(self):
+        """The image is there, and what it lacks is said."""
+        done = self.render("--target-error", "1e-8", "--spp", "16")
+        self.assertIn("the image's error is not yet surely below 1e-08: after 16 samples per pixel", done.stderr)
+        done = self.render("--target-error", "1e-8", "--spp", "4")
+        self.assertIn("4 samples per pixel are too few to tell the image's error", done.stderr)
         self.assertTrue(self.out.exists())
 
     def test_bar(self):
