@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "film/error_estimate.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -19,17 +22,22 @@ Rgb sumOf(const Pixel& p) {
   return {static_cast<float>(p.sum[0]), static_cast<float>(p.sum[1]), static_cast<float>(p.sum[2])};
 }
 
-// The median of the pixels beside one, of a channel's sum. values: for its own use.
-double besides(const FilmBuffer& film, size_t index, size_t channel, std::vector<double>& values) {
-  const int width = film.width, x = static_cast<int>(index % static_cast<size_t>(width)),
-            y = static_cast<int>(index / static_cast<size_t>(width));
-  values.clear();
-  for (int v = std::max(0, y - 1); v <= std::min(film.height - 1, y + 1); ++v)
-    for (int u = std::max(0, x - 1); u <= std::min(width - 1, x + 1); ++u)
-      if (u != x || v != y) values.push_back(film.at(u, v).sum[channel]);
-  if (values.empty()) return film.pixels[index].sum[channel];
-  std::sort(values.begin(), values.end());
-  return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
+float channelOf(Rgb c, int channel) { return channel == 0 ? c.x : channel == 1 ? c.y : c.z; }
+
+// The median of the pixels beside one of an image of that width, of a channel.
+float besides(const std::vector<Rgb>& image, size_t width, size_t index, int channel) {
+  const size_t height = image.size() / width, x = index % width, y = index / width;
+  std::array<float, 8> values;
+  size_t count = 0;
+  for (size_t v = y - std::min<size_t>(y, 1); v <= std::min(height - 1, y + 1); ++v)
+    for (size_t u = x - std::min<size_t>(x, 1); u <= std::min(width - 1, x + 1); ++u) {
+      if (u == x && v == y) continue;
+      const float value = channelOf(image[v * width + u], channel);
+      size_t at = count++;
+      for (; at > 0 && values[at - 1] > value; --at) values[at] = values[at - 1];
+      values[at] = value;
+    }
+  return count == 0 ? channelOf(image[index], channel) : 0.5f * (values[(count - 1) / 2] + values[count / 2]);
 }
 
 }  // namespace
@@ -43,45 +51,42 @@ uint32_t ErrorEstimate::next(uint32_t samples) {
 
 std::optional<EstimatedError> ErrorEstimate::look(const FilmBuffer& film) {
   const uint32_t n = film.samples;
+  const size_t pixels = film.pixels.size();
   const bool power = std::has_single_bit(n);
+  std::vector<Rgb> sums(pixels);
+  tbb::parallel_for(size_t{0}, pixels, [&](size_t i) { sums[i] = sumOf(film.pixels[i]); });
   std::optional<EstimatedError> error;
   if (n >= kFirstTold && lastCount_ == (power ? n / 2 : n - n / 3)) {
     const int runs = power ? 2 : 3;
     const double each = double(runs) / n;  // over the samples of a run
-    std::vector<double> errors(film.pixels.size()), values;
-    for (size_t i = 0; i < film.pixels.size(); ++i) {
-      const Pixel& p = film.pixels[i];
-      const std::array<std::array<double, 3>, 2> at{
-          std::array{double(last_[i].x), double(last_[i].y), double(last_[i].z)},
-          runs == 3 ? std::array{double(before_[i].x), double(before_[i].y), double(before_[i].z)}
-                    : std::array<double, 3>{}};
-      double pixel = 0;
-      for (size_t c = 0; c < 3; ++c) {
-        const double all = p.sum[c], mean = all / n;
-        const double run[] = {(all - at[0][c]) * each, (at[0][c] - at[1][c]) * each, at[1][c] * each};
+    std::vector<double> errors(pixels);
+    tbb::parallel_for(size_t{0}, pixels, [&](size_t i) {
+      for (int c = 0; c < 3; ++c) {
+        const double all = double(channelOf(sums[i], c)), last = double(channelOf(last_[i], c)),
+                     before = runs == 3 ? double(channelOf(before_[i], c)) : 0, mean = all / n;
+        const double run[] = {(all - last) * each, (last - before) * each, before * each};
         double scatter = 0;
         for (int b = 0; b < runs; ++b) scatter += (run[b] - mean) * (run[b] - mean);
         // What it converges to is between its runs, and of them nearest to the pixels beside it: where one run has met
         // rare light, the mean would make little of the error.
         const auto [least, most] = std::minmax_element(run, run + runs);
-        const double value = std::clamp(besides(film, i, c, values) / n, *least, *most);
-        pixel += scatter / (runs * (runs - 1)) / (value * value + kEpsilon) / 3;
+        const double value =
+            std::clamp(double(besides(sums, static_cast<size_t>(film.width), i, c)) / n, *least, *most);
+        errors[i] += scatter / (runs * (runs - 1)) / (value * value + kEpsilon) / 3;
       }
-      errors[i] = pixel;
-    }
-    const size_t kept = errors.size() - static_cast<size_t>(kTrimmed * double(errors.size()));
+    });
+    const size_t kept = pixels - static_cast<size_t>(kTrimmed * double(pixels));
     std::nth_element(errors.begin(), errors.begin() + static_cast<ptrdiff_t>(kept - 1), errors.end());
     double sum = 0, squares = 0;
     for (size_t i = 0; i < kept; ++i) sum += errors[i], squares += errors[i] * errors[i];
-    const double pixels = double(kept), mean = sum / pixels;
-    const double standardError = pixels > 1 ? std::sqrt(std::max(0.0, squares / pixels - mean * mean) / (pixels - 1))
-                                            : std::numeric_limits<double>::infinity();
+    const double count = double(kept), mean = sum / count;
+    const double standardError = kept > 1 ? std::sqrt(std::max(0.0, squares / count - mean * mean) / (count - 1))
+                                          : std::numeric_limits<double>::infinity();
     error = {mean, mean + kNormal95 * standardError};
   }
   if (power) {
     std::swap(before_, last_);
-    last_.resize(film.pixels.size());
-    for (size_t i = 0; i < film.pixels.size(); ++i) last_[i] = sumOf(film.pixels[i]);
+    last_ = std::move(sums);
     lastCount_ = n;
   }
   return error;

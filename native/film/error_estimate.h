@@ -2,7 +2,6 @@
 // How far an image is from what it converges to, told by its own samples alone.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -28,7 +27,7 @@ class ErrorEstimate {
   // To be called at each of them; the first, which are too few to tell, give none.
   std::optional<EstimatedError> look(const FilmBuffer& film);
 
-  static constexpr uint64_t kBytesPerPixel = 2 * sizeof(Rgb);
+  static constexpr uint64_t kBytesPerPixel = 3 * sizeof(Rgb) + sizeof(double);  // at most, while it looks
 
  private:
   std::vector<Rgb> before_, last_;  // sums of the pixels at the last two powers of 2
