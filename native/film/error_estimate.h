@@ -2,6 +2,7 @@
 // How far an image is from what it converges to, told by its own samples alone.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -27,10 +28,10 @@ class ErrorEstimate {
   // To be called at each of them; the first, which are too few to tell, give none.
   std::optional<EstimatedError> look(const FilmBuffer& film);
 
-  static constexpr uint64_t kBytesPerPixel = 3 * sizeof(Rgb) + sizeof(double);  // at most, while it looks
+  static constexpr uint64_t kBytesPerPixel = 9 * sizeof(float) + sizeof(double);  // at most, while it looks
 
  private:
-  std::vector<Rgb> before_, last_;  // sums of the pixels at the last two powers of 2
+  std::vector<std::array<float, 3>> before_, last_;  // sums of the pixels at the last two powers of 2
   uint32_t lastCount_ = 0;
 };
 

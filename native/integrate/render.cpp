@@ -154,8 +154,7 @@ class Run {
   }
 
   void estimate() {
-    if (film_->samples != lookAt_) return;
-    lookAt_ = ErrorEstimate::next(lookAt_);
+    if (ErrorEstimate::next(film_->samples - 1) != film_->samples) return;
     if (const auto error = estimate_.look(*film_)) error_ = error, lookedAt_ = film_->samples;
   }
   bool isGoodEnough() const { return error_ && error_->upper <= settings_.targetError; }
@@ -195,7 +194,7 @@ class Run {
   double each_ = 0;
   ErrorEstimate estimate_;
   std::optional<EstimatedError> error_;
-  uint32_t lookAt_ = ErrorEstimate::next(0), lookedAt_ = 0;
+  uint32_t lookedAt_ = 0;
   Clocks start_;
   tbb::enumerable_thread_specific<Counts> counts_;
 };

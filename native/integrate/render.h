@@ -48,8 +48,8 @@ struct RenderSettings {
   SamplerType sampler = SamplerType::kSobol;
   uint32_t spp = 64;   // camera samples per pixel in the image, the pilot's included unless it is apart (pilotApart)
   double seconds = 0;  // > 0: stop after this time instead
-  double targetError =
-      0;  // > 0: stop as soon as the image is told to be better, at the latest after all samples or the time
+  // > 0: stop as soon as the image is told to be better, at the latest after all samples or the time.
+  double targetError = 0;
   std::optional<SampleRange> part;  // of the spp samples these alone; not with a time, nor measured costs
   int samplesPerHit = 3;
   uint32_t pilotSpp = 4;  // camera samples of the pilot per pixel, of `auto` per 2 x 2 pixels
@@ -106,7 +106,7 @@ struct Clocks {
 struct Progress {
   bool pilot = false;
   uint32_t samples = 0;  // complete ones of every pixel
-  uint32_t of = 0;       // 0: by time
+  uint32_t of = 0;       // 0: not known before
   double fraction = 0, seconds = 0;
   std::optional<double> left;  // none: not known yet
 };

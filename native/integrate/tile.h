@@ -202,7 +202,7 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
     addLight(light->direct, split->direct, seenThrough * exposure);
   if (taken != nullptr)
     for (size_t i = 0; i < K; ++i) taken[i] += static_cast<uint32_t>(counts.samples[i] - before[i]);
-  if ((N & kNeedsBounces) != 0 && more.count > 0) {
+  if constexpr ((N & kNeedsBounces) != 0) {
     const Fractions<K> n = record ? Mixture<K>(plan.fractions, plan.samples, plan.weights).n : Fractions<K>{};
     float surfaceSamples = 0;
     for (size_t i = 0; i < Techniques<K>::kSurface; ++i)

@@ -48,7 +48,7 @@ ImageError compareImages(const RgbImage& image, const RgbImage& reference) {
   const double n = 3.0 * static_cast<double>(std::max<size_t>(1, pixels));
   e.mse /= n, e.relMse /= n, e.mape /= n, e.smape /= n;
   std::vector<float> sorted = e.relMsePixels;
-  const size_t keep = pixels - (pixels + 999) / 1000;
+  const size_t keep = keptOfTrimmed(pixels);
   std::nth_element(sorted.begin(),
                    sorted.begin() + static_cast<std::ptrdiff_t>(std::min(keep, std::max<size_t>(1, pixels) - 1)),
                    sorted.end());

@@ -6,11 +6,12 @@
 #include <span>
 #include <string>
 
+#include "math/rel_mse.h"
 #include "report/image.h"
 
 namespace wardmis {
 
-inline constexpr double kRelMseEpsilon = 0.01, kMapeEpsilon = 0.01;
+inline constexpr double kMapeEpsilon = 0.01;
 
 struct Metrics {
   double mse = 0;            // mean (x - r)^2

@@ -54,7 +54,7 @@ TEST(ErrorEstimate, IsTheVarianceOfIndependentSamples) {
 TEST(ErrorEstimate, IsBelowItsLimitAsOftenAsItSays) {
   int above = 0, trials = 0;
   for (unsigned seed = 0; seed < 400; ++seed)
-    lookAt(200, 1, 0.3, 24, seed, [&](const FilmBuffer& film, const EstimatedError& e) {
+    lookAt(2000, 1, 0.3, 24, seed, [&](const FilmBuffer& film, const EstimatedError& e) {
       if (film.samples != 24) return;
       ++trials;
       above += e.upper < 0.09 / film.samples / 1.01 ? 1 : 0;
