@@ -25,6 +25,7 @@ SCENES = (
     "studio",
 )
 DEFAULT, EQUAL = "auto", "equal"
+CONFIGURATIONS = f"{DEFAULT}:allocation=auto,pixels=auto", EQUAL  # of a report pixels have equal samples otherwise
 NOT_MEASURED = "–"
 
 
@@ -85,7 +86,7 @@ def measured(scene: str, folder: Path, options: argparse.Namespace) -> Row:
     blender.run("--python-exit-code", "1", "--python", ROOT / "blend" / "bench_scenes.py", "--", folder, scene)
     out = folder / scene
     shutil.rmtree(out, ignore_errors=True)  # an earlier one would be gone on with, not measured
-    words = ["-c", DEFAULT, "-c", EQUAL, "--seeds", options.seeds, "--cycles-seeds", options.seeds]
+    words = [*(w for c in CONFIGURATIONS for w in ("-c", c)), "--seeds", options.seeds, "--cycles-seeds", options.seeds]
     words += ["--max-spp", options.samples, "--resolution", options.resolution]
     script = ROOT / "blend" / "compare.py"
     blender.run(folder / f"{scene}.blend", "--python-exit-code", "1", "--python", script, "--", "-o", out, *words)

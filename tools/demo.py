@@ -50,6 +50,7 @@ def wardmis(effort: Effort, allocation: str, samples: int, seed: int) -> dict[st
         "render.engine": "WARDMIS",
         "render.resolution_percentage": effort.percentage,
         "wardmis.allocation": allocation,
+        "wardmis.pixels": "even",  # at equal samples
         "wardmis.stop_by": "samples",
         "wardmis.samples": samples,
         "wardmis.seed": seed,

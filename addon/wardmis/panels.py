@@ -103,6 +103,7 @@ class WARDMIS_RENDER_PT_allocation(RenderPanel, bpy.types.Panel):
             draw_text(column, "Samples are shared equally: Automatic is for Balance weights", "INFO")
         column.prop(settings, "integrand")
         column.prop(settings, "samples_per_hit")
+        column.prop(settings, "pixels")
         column.separator()
         pilot = uses_pilot(settings)
         _row(column, pilot).prop(settings, "pilot_samples")
@@ -246,6 +247,7 @@ class WARDMIS_VIEWLAYER_PT_passes(Panel, bpy.types.Panel):
         noise = column.column(heading="Samples")
         noise.prop(layer.wardmis, "use_pass_variance")
         noise.prop(layer.wardmis, "use_pass_allocation")
+        noise.prop(layer.wardmis, "use_pass_samples")
 
 
 class WARDMIS_VIEWLAYER_PT_filter(Panel, bpy.types.Panel):

@@ -32,6 +32,7 @@ PASSES = (
     Pass("Normal", "XYZ", "VECTOR", "normal"),
     Pass("Albedo", "RGB", "COLOR", "albedo"),
     Pass("Variance", "RGB", "COLOR", "variance"),
+    Pass("Samples", "X", "VALUE", "samples"),
     *(
         Pass(compat.PASS_NAMES[group], channels, kind, group)
         for group, channels, kind in (
@@ -86,6 +87,12 @@ class WARDMIS_PG_view_layer(bpy.types.PropertyGroup):
         name="Allocation",
         description="Deliver how the samples were shared at each pixel: one pass for each technique (the lobes of the "
         "surfaces, cosine and light), with its share from 0 to 1",
+        default=False,
+        update=_changed,
+    )
+    use_pass_samples: BoolProperty(
+        name="Count",
+        description="Deliver how many samples each pixel has",
         default=False,
         update=_changed,
     )

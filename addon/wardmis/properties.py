@@ -64,6 +64,17 @@ ALLOCATIONS = (
     ),
 )
 
+PIXELS = (
+    ("auto", "Automatic", "By Error where the allocation is Automatic, too, else Even"),
+    ("even", "Even", "As many samples in each pixel, as a comparison of allocations wants it"),
+    (
+        "by-error",
+        "By Error",
+        "A quarter of the samples at most is shared evenly and measured; the others go where they bring most, in the time of "
+        "as many for each pixel",
+    ),
+)
+
 WEIGHTS = (
     (
         "auto",
@@ -162,6 +173,13 @@ class WARDMIS_PG_scene(bpy.types.PropertyGroup):
         "direction), the cosine (all directions) or the light (towards lamps and the sky). It changes the noise, "
         "never the brightness",
         items=ALLOCATIONS,
+        default="auto",
+        update=_draw_anew,
+    )
+    pixels: EnumProperty(
+        name="Pixels",
+        description="Which pixels get how many of the samples. It changes the noise, never the brightness",
+        items=PIXELS,
         default="auto",
         update=_draw_anew,
     )

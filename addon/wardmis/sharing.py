@@ -20,4 +20,4 @@ def uses_pilot(settings: Any) -> bool:
 def options(settings: Any) -> dict[str, str]:
     """Of the command, whose default yields only where it is not given."""
     allocation = {} if yields(settings) else {"allocation": settings.allocation}
-    return {**allocation, "weights": settings.weights}
+    return {**allocation, "pixels": settings.pixels, "weights": settings.weights}

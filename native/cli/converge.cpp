@@ -26,7 +26,7 @@ using nlohmann::json;
 struct Options {
   std::string scene, folder, baseline, reference, title, resolution, progress = "auto";
   std::vector<std::string> specs{"equal", "variance", "second-moment", "auto"}, external;
-  SettingOptions settings;
+  SettingOptions settings{PixelSamples::kEven};  // allocations are compared at equal samples
   size_t seeds = 16;
   uint64_t seed = 1;
   uint32_t maxSpp = 64;

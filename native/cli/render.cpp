@@ -86,7 +86,7 @@ std::vector<PassInfo> choosePasses(const std::string& list, TechniqueMask techni
     }
     if (chosen.size() == before)
       throw Error(ExitCode::kUsage, fmt::format("--passes: there is no pass '{}'", want),
-                  "known: combined, depth, normal, albedo, variance, allocation, position, uv, object-index, "
+                  "known: combined, depth, normal, albedo, variance, allocation, samples, position, uv, object-index, "
                   "material-index, emission, environment, and diffuse-, glossy-, transmission- with direct, indirect, "
                   "color");
   }
@@ -118,6 +118,10 @@ int run(Options& o) {
     if (s.allocation == Allocation::kAuto && s.costFrom == CostFrom::kMeasured)
       throw Error(ExitCode::kUsage, "--samples with --cost measured: each part would measure other costs",
                   "leave one of them out, or give the costs: --cost L,C,S");
+    if (s.pixels == PixelSamples::kByError)
+      throw Error(ExitCode::kUsage,
+                  "--samples with --pixels by-error: no part knows the samples that tell where more are wanted",
+                  "leave one of them out");
   }
   for (const PassInfo& p : choosePasses(o.passes, 0, {"any"}))  // whether they exist
     s.data = s.data || p.data, s.light = s.light || p.light;
@@ -280,7 +284,7 @@ Verb addRender(CLI::App& app) {
       ->capture_default_str();
   app.add_option(
       "--passes", o->passes,
-      "of combined,depth,normal,albedo,variance,allocation (default: all of these), position,uv,object-index,"
+      "of combined,depth,normal,albedo,variance,allocation (default: all of these), samples,position,uv,object-index,"
       "material-index,emission,environment, diffuse-direct,diffuse-indirect,diffuse-color and likewise for "
       "glossy and transmission; of the latter also PASS=NAME, its name in the file");
   app.add_option("--stats", o->stats, "write statistics to this JSON file");

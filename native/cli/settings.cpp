@@ -20,6 +20,7 @@ constexpr std::array kAllocations{Allocation::kEqual,
                                   Allocation::kRepresentativity,
                                   Allocation::kAlbedo,
                                   Allocation::kAuto};
+constexpr std::array kPixelSamples{PixelSamples::kEven, PixelSamples::kByError, PixelSamples::kAuto};
 constexpr std::array kWeights{Weights::kBalance, Weights::kNonbalance, Weights::kPower, Weights::kCutoff,
                               Weights::kMaximum};
 constexpr std::array kIntegrands{Integrand::kSplit, Integrand::kJoint};
@@ -45,6 +46,12 @@ void SettingOptions::add(CLI::App& app) {
   app.add_option("--allocation", allocation_, "how the samples of a hit are shared")
       ->check(among(kAllocations))
       ->default_str(std::string(name(RenderSettings{}.allocation)));
+  app.add_option(
+         "--pixels", pixels_,
+         "how camera samples are shared between pixels: as many for each; by-error: more where they take more "
+         "from the image's relative error, in the time of as many for each; auto: the latter with --allocation auto")
+      ->check(among(kPixelSamples))
+      ->capture_default_str();
   app.add_option("--weights", weights_, "MIS weights; auto: what the paper pairs with the allocation")
       ->check(among(kWeights, {"auto"}))
       ->capture_default_str();
@@ -102,6 +109,7 @@ RenderSettings SettingOptions::chosen() const {
   else if (!yielding().empty())
     s.allocation = Allocation::kEqual;
   if (weights_ != "auto") s.weights = pick(weights_, kWeights);
+  s.pixels = pick(pixels_, kPixelSamples);
   s.integrand = pick(integrand_, kIntegrands);
   s.integrator = pick(integrator_, kIntegrators);
   s.sampler = pick(sampler_, kSamplers);
@@ -148,6 +156,7 @@ SettingOptions SettingOptions::with(const std::string& changes) const {
 
 nlohmann::json toJson(const RenderSettings& s) {
   return {{"allocation", name(s.allocation)},
+          {"pixels", name(s.sharesPixels() ? PixelSamples::kByError : PixelSamples::kEven)},
           {"weights", name(s.weightRule())},
           {"integrand", name(s.integrand)},
           {"integrator", name(s.integrator)},

@@ -29,6 +29,8 @@ CLI::IsMember among(const std::array<E, N>& all, std::vector<std::string> more =
 
 class SettingOptions {
  public:
+  // pixels: the default.
+  explicit SettingOptions(PixelSamples pixels = PixelSamples::kAuto) : pixels_(name(pixels)) {}
   void add(CLI::App& app);        // the options write to this object, which must not move from then on
   RenderSettings chosen() const;  // once parsed. Throws Error(kUsage)
   // Why chosen() shares samples equally although auto is the default; empty: it does not.
@@ -39,8 +41,8 @@ class SettingOptions {
  private:
   RenderSettings numbers_;
   std::string allocation_,  // empty: not given
-      weights_ = "auto", integrand_ = "split", integrator_ = "path", sampler_ = "sobol", kernel_ = "auto",
-      cost_ = "rays";
+      pixels_, weights_ = "auto", integrand_ = "split", integrator_ = "path", sampler_ = "sobol", kernel_ = "auto",
+               cost_ = "rays";
 };
 
 // Without what ends a render.

@@ -48,6 +48,14 @@ double meanVariance(const FilmBuffer& film) {
   return sum / static_cast<double>(std::max<size_t>(1, film.pixels.size()));
 }
 
+// How they are shared between the pixels; null: evenly.
+json pixelSamples(const FilmBuffer& film, double gain) {
+  if (film.shares.after.empty()) return {};
+  uint32_t least = ~0u, most = 0;
+  for (const Pixel& p : film.pixels) least = std::min(least, film.count(p)), most = std::max(most, film.count(p));
+  return {{"least", least}, {"most", most}, {"expected_gain", gain}};
+}
+
 json statisticsJson(const std::string& path, const RenderSettings& settings, const Scene& scene, const Statistics& s,
                     const FilmBuffer& film, double read, double write, double total) {
   json j{{"version", WARDMIS_VERSION},
@@ -62,6 +70,7 @@ json statisticsJson(const std::string& path, const RenderSettings& settings, con
            {"total", total}}},
          {"cpu_seconds", {{"pilot", s.pilotCpuSeconds}, {"render", s.renderCpuSeconds}}},
          {"samples_per_pixel", film.samples},
+         {"pixel_samples", pixelSamples(film, s.pixelGain)},
          {"pilot_in_image", s.allocated ? json(s.pilotKept) : json()},
          {"pixels", film.pixels.size()},
          {"needs", describe(s.needs)},

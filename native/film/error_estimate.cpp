@@ -15,12 +15,12 @@
 namespace wardmis {
 namespace {
 
-constexpr uint32_t kFirstKept = 4, kFirstTold = 8;  // samples
-constexpr double kNormal95 = 1.6449;                // one-sided
-
 std::array<float, 3> sumOf(const Pixel& p) {
   return {static_cast<float>(p.sum[0]), static_cast<float>(p.sum[1]), static_cast<float>(p.sum[2])};
 }
+
+constexpr uint32_t kFirstKept = 4, kFirstTold = 8;  // samples
+constexpr double kNormal95 = 1.6449;                // one-sided
 
 // The median of the pixels beside one of an image of that width, of a channel.
 float besides(const std::vector<std::array<float, 3>>& image, size_t width, size_t index, size_t channel) {
@@ -48,29 +48,39 @@ uint32_t ErrorEstimate::next(uint32_t samples) {
 }
 
 std::optional<EstimatedError> ErrorEstimate::look(const FilmBuffer& film) {
-  const uint32_t n = film.samples;
   const size_t pixels = film.pixels.size();
-  const bool power = std::has_single_bit(n);
-  std::vector<std::array<float, 3>> sums(pixels);
-  tbb::parallel_for(size_t{0}, pixels, [&](size_t i) { sums[i] = sumOf(film.pixels[i]); });
   std::optional<EstimatedError> error;
-  if (n >= kFirstTold && lastCount_ == (power ? n / 2 : n - n / 3)) {
-    const int runs = power ? 2 : 3;
-    const double each = double(runs) / n;  // over the samples of a run
+  if (last_.empty()) {
+    before_.resize(pixels), last_.resize(pixels);
+  } else if (film.samples >= kFirstTold) {
+    std::vector<std::array<float, 3>> means(pixels);
+    tbb::parallel_for(size_t{0}, pixels, [&](size_t i) {
+      const Rgb m = film.mean(film.pixels[i]);
+      means[i] = {m.x, m.y, m.z};
+    });
     std::vector<double> errors(pixels);
     tbb::parallel_for(size_t{0}, pixels, [&](size_t i) {
+      const uint32_t n = film.count(i);
+      const Record none, now{n, sumOf(film.pixels[i])};
+      // its ends; of a pixel that has twice as many as at the last, before that is one run
+      std::array<const Record*, 4> ends{&none, &before_[i], &last_[i], &now};
+      if (n >= 2 * last_[i].samples) ends[1] = &none;
       for (size_t c = 0; c < 3; ++c) {
-        const double all = double(sums[i][c]), last = double(last_[i][c]),
-                     before = runs == 3 ? double(before_[i][c]) : 0, mean = all / n;
-        const double run[] = {(all - last) * each, (last - before) * each, before * each};
-        double scatter = 0;
-        for (int b = 0; b < runs; ++b) scatter += (run[b] - mean) * (run[b] - mean);
+        const double mean = double(now.sum[c]) / n;
+        double scatter = 0, least = std::numeric_limits<double>::infinity(), most = -least;
+        int runs = 0;
+        for (size_t b = 1; b < ends.size(); ++b) {
+          const double length = double(ends[b]->samples) - ends[b - 1]->samples;
+          if (!(length > 0)) continue;
+          const double run = (double(ends[b]->sum[c]) - double(ends[b - 1]->sum[c])) / length;
+          scatter += length * (run - mean) * (run - mean), ++runs;
+          least = std::min(least, run), most = std::max(most, run);
+        }
+        if (runs < 2) continue;
         // What it converges to is between its runs, and of them nearest to the pixels beside it: where one run has met
         // rare light, the mean would make little of the error.
-        const auto [least, most] = std::minmax_element(run, run + runs);
-        const double value =
-            std::clamp(double(besides(sums, static_cast<size_t>(film.width), i, c)) / n, *least, *most);
-        errors[i] += scatter / (runs * (runs - 1)) / (value * value + kRelMseEpsilon) / 3;
+        const double value = std::clamp(double(besides(means, static_cast<size_t>(film.width), i, c)), least, most);
+        errors[i] += scatter / (n * (runs - 1.0)) / (value * value + kRelMseEpsilon) / 3;
       }
     });
     const size_t kept = keptOfTrimmed(pixels);
@@ -82,11 +92,10 @@ std::optional<EstimatedError> ErrorEstimate::look(const FilmBuffer& film) {
                                           : std::numeric_limits<double>::infinity();
     error = {mean, mean + kNormal95 * standardError};
   }
-  if (power) {
-    std::swap(before_, last_);
-    last_ = std::move(sums);
-    lastCount_ = n;
-  }
+  tbb::parallel_for(size_t{0}, pixels, [&](size_t i) {
+    const uint32_t n = film.count(i);
+    if (n >= 2 * last_[i].samples) before_[i] = last_[i], last_[i] = {n, sumOf(film.pixels[i])};
+  });
   return error;
 }
 

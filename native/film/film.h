@@ -7,6 +7,7 @@
 #include <array>
 #include <vector>
 
+#include "film/pixel_shares.h"
 #include "math/component.h"
 #include "math/exact_sum.h"
 #include "math/vec.h"
@@ -66,12 +67,15 @@ struct FilmBuffer {
   std::vector<Pixel> pixels;
   size_t techniques = 0;               // that the renderer counts
   std::vector<uint32_t> sampleCounts;  // [pixel * techniques + technique]: samples that it took at first hits
+  std::vector<uint32_t> rays;          // of each pixel; empty where no survey wants it
   std::vector<DataPixel> data;         // of each pixel; empty where no pass wants it
   std::vector<LightPixel> light;       // likewise
   std::vector<CatcherPixel> catchers;  // of each pixel; empty where there are none
   bool transparent = false;            // without the sky
   uint32_t first = 0;                  // of the image's camera samples, the first that is here
-  uint32_t samples = 0;                // from there on, that every pixel has
+  uint32_t samples = 0;                // from there on, where pixels share them evenly; of a pixel: count()
+  float partial = 0;                   // of one more, that so many of the pixels have
+  PixelShares shares;                  // of the pixels
 
   FilmBuffer() = default;
   FilmBuffer(int w, int h, size_t techniqueCount = 0)
@@ -87,18 +91,27 @@ struct FilmBuffer {
     return pixels[static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)];
   }
 
+  // Samples that a pixel has.
+  uint32_t count(size_t index) const {
+    return shares.count(index, double(first) + samples + double(partial)) - shares.count(index, first);
+  }
+
+  // p: one of `pixels`.
+  uint32_t count(const Pixel& p) const { return count(static_cast<size_t>(&p - pixels.data())); }
+
   Rgb mean(const Pixel& p) const {
-    const double s = samples > 0 ? 1.0 / samples : 0;
+    const double s = samples > 0 ? 1.0 / count(p) : 0;
     return {static_cast<float>(p.sum[0] * s), static_cast<float>(p.sum[1] * s), static_cast<float>(p.sum[2] * s)};
   }
   // The picture: colour, which alpha is in already, and alpha.
   std::array<float, 4> combined(size_t index) const {
     const Pixel& p = pixels[index];
     const Rgb c = mean(p);
-    const double alpha = samples > 0 ? p.alpha[0] / samples : 0;
-    if (catchers.empty() || samples == 0) return {c.x, c.y, c.z, static_cast<float>(alpha)};
+    const uint32_t n = count(p);
+    const double alpha = n > 0 ? p.alpha[0] / n : 0;
+    if (catchers.empty() || n == 0) return {c.x, c.y, c.z, static_cast<float>(alpha)};
     const CatcherPixel& k = catchers[index];
-    const double covered = std::clamp(k.covered[0] / samples, 0.0, 1.0);
+    const double covered = std::clamp(k.covered[0] / n, 0.0, 1.0);
     double lit = 1;
     if (k.caught > 0) {
       lit = 0;
@@ -106,15 +119,13 @@ struct FilmBuffer {
       lit = 1 + std::clamp(alpha, 0.0, 1.0) * (lit - 1);
     }
     const double shown = covered + (1 - covered) * (1 - std::clamp(lit, 0.0, 1.0)), sky = transparent ? 0 : 1 - shown;
-    const auto channel = [&](size_t i) {
-      return static_cast<float>((p.sum[i] - k.light[i] + sky * k.sky[i]) / samples);
-    };
+    const auto channel = [&](size_t i) { return static_cast<float>((p.sum[i] - k.light[i] + sky * k.sky[i]) / n); };
     return {channel(0), channel(1), channel(2), transparent ? static_cast<float>(shown) : 1.0f};
   }
   // Variance of the mean, from the samples as if they were independent; 0 with fewer than two samples.
   Rgb variance(const Pixel& p) const {
-    if (samples < 2) return {0, 0, 0};
-    const double n = samples;
+    const double n = count(p);
+    if (n < 2) return {0, 0, 0};
     const auto one = [&](size_t i) {
       const double mean = p.sum[i] / n;
       return static_cast<float>(std::max(0.0, p.squares[i] / n - mean * mean) / (n - 1));

@@ -33,10 +33,10 @@ struct KernelInput {
 
 struct Tile {
   int x0, y0, x1, y1;  // within the border
-  uint32_t firstSample, samples;
+  double first, last;  // samples of the image, as of PixelShares::count(), of which the first are there
 };
 
-// Adds camera samples firstSample .. +samples of the tile's pixels to the film, and, where `pilot` is given, their
+// Adds camera samples to the film until the tile's pixels have theirs of `last`, and, where `pilot` is given, their
 // moments.
 template <size_t K>
 using TileKernel = void (*)(const KernelInput<K>&, const Tile&, FilmBuffer&, Pilot<K>* pilot, Counts&);

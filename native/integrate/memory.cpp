@@ -26,11 +26,12 @@ uint64_t bytesPerPixelWith(const RenderSettings& s, bool catchers) {
   const uint64_t sums = kept + (s.data ? sizeof(DataPixel) : 0) + (s.light ? sizeof(LightPixel) : 0);
   const uint64_t written = sums + kWritten<K> + (s.data ? kDataWritten : 0) + (s.light ? kLightWritten : 0) +
                            (s.part ? sums : 0);  // a part has its sums in the file, too
-  if (s.allocation == Allocation::kAuto)         // its pilot is over before there is a film
-    return std::max(written, (kFilm + sizeof(PilotPixel) + sizeof(CandidateSums<K>) + sizeof(PixelFractions<K>)) /
-                                 (kCoarse * kCoarse));
-  if (!needsMoments(s.allocation)) return written;
-  return std::max<uint64_t>(written, kept + sizeof(PilotPixel) + sizeof(HitMoments<K>) + sizeof(PixelFractions<K>));
+  const uint64_t most = std::max(written, s.sharesPixels() ? sums + PixelSurvey::kBytesPerPixel : 0);
+  if (s.allocation == Allocation::kAuto)  // its pilot is over before there is a film
+    return std::max(most, (kFilm + sizeof(PilotPixel) + sizeof(CandidateSums<K>) + sizeof(PixelFractions<K>)) /
+                              (kCoarse * kCoarse));
+  if (!needsMoments(s.allocation)) return most;
+  return std::max<uint64_t>(most, kept + sizeof(PilotPixel) + sizeof(HitMoments<K>) + sizeof(PixelFractions<K>));
 }
 
 }  // namespace

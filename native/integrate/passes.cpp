@@ -12,14 +12,16 @@ namespace {
 using Value = std::array<float, 4>;
 using Getter = std::function<Value(const FilmBuffer&, size_t pixel)>;
 
+constexpr const char* kSamples = "samples";  // a pass that is not there unless it is asked for
+
 struct PassSource {
   PassInfo info;
   Getter get;
 };
 
 template <class Sum>  // of three channels
-Value meanOf(const FilmBuffer& f, const Sum& sum) {
-  const double s = f.samples > 0 ? 1.0 / f.samples : 0;
+Value meanOf(const FilmBuffer& f, size_t pixel, const Sum& sum) {
+  const double s = f.samples > 0 ? 1.0 / f.count(pixel) : 0;
   return {static_cast<float>(sum[0] * s), static_cast<float>(sum[1] * s), static_cast<float>(sum[2] * s), 0};
 }
 
@@ -31,14 +33,17 @@ const std::vector<PassSource>& sources() {
          return {f.pixels[i].depth, 0, 0, 0};
        }},
       {{"Normal", "XYZ", "normal"},
-       [](const FilmBuffer& f, size_t i) -> Value { return meanOf(f, f.pixels[i].normal); }},
+       [](const FilmBuffer& f, size_t i) -> Value { return meanOf(f, i, f.pixels[i].normal); }},
       {{"Albedo", "RGB", "albedo"},
-       [](const FilmBuffer& f, size_t i) -> Value { return meanOf(f, f.pixels[i].albedo); }},
+       [](const FilmBuffer& f, size_t i) -> Value { return meanOf(f, i, f.pixels[i].albedo); }},
       {{"Variance", "RGB", "variance"},
        [](const FilmBuffer& f, size_t i) -> Value {
-         const Pixel& p = f.pixels[i];
-         const Rgb v = f.variance(p);
+         const Rgb v = f.variance(f.pixels[i]);
          return {v.x, v.y, v.z, 0};
+       }},
+      {{"Samples", "X", kSamples},
+       [](const FilmBuffer& f, size_t i) -> Value {
+         return {static_cast<float>(f.count(i)), 0, 0, 0};
        }},
   };
   return all;
@@ -51,7 +56,7 @@ const std::vector<PassSource>& dataSources() {
          const Vec3f p = f.data[i].position;
          return {p.x, p.y, p.z, 0};
        }},
-      {{"UV", "UVA", "uv", true}, [](const FilmBuffer& f, size_t i) -> Value { return meanOf(f, f.data[i].uv); }},
+      {{"UV", "UVA", "uv", true}, [](const FilmBuffer& f, size_t i) -> Value { return meanOf(f, i, f.data[i].uv); }},
       {{"Object Index", "X", "object-index", true},
        [](const FilmBuffer& f, size_t i) -> Value {
          return {f.data[i].objectIndex, 0, 0, 0};
@@ -61,9 +66,9 @@ const std::vector<PassSource>& dataSources() {
          return {f.data[i].materialIndex, 0, 0, 0};
        }},
       {{"Emission", "RGB", "emission", true},
-       [](const FilmBuffer& f, size_t i) -> Value { return meanOf(f, f.data[i].emission); }},
+       [](const FilmBuffer& f, size_t i) -> Value { return meanOf(f, i, f.data[i].emission); }},
       {{"Environment", "RGB", "environment", true},
-       [](const FilmBuffer& f, size_t i) -> Value { return meanOf(f, f.data[i].environment); }},
+       [](const FilmBuffer& f, size_t i) -> Value { return meanOf(f, i, f.data[i].environment); }},
   };
   return all;
 }
@@ -96,7 +101,7 @@ const std::vector<PassSource>& lightSources() {
           {{name + " Indirect", "RGB", group + "-indirect", false, true},
            [c](const FilmBuffer& f, size_t i) { return dividedBy(f.light[i].indirect[c], f.light[i].color[c]); }});
       list.push_back({{name + " Color", "RGB", group + "-color", false, true},
-                      [c](const FilmBuffer& f, size_t i) { return meanOf(f, f.light[i].color[c]); }});
+                      [c](const FilmBuffer& f, size_t i) { return meanOf(f, i, f.light[i].color[c]); }});
     }
     return list;
   }();
@@ -130,7 +135,8 @@ std::string allocationPass(const std::string& technique) {
 
 std::vector<PassInfo> passesFor(TechniqueMask techniques, const std::vector<std::string>& names) {
   std::vector<PassInfo> result;
-  for (const PassSource& s : sources()) result.push_back(s.info);
+  for (const PassSource& s : sources())
+    if (s.info.group != kSamples) result.push_back(s.info);
   for (size_t t = 0; t < names.size(); ++t)
     if (has(techniques, t)) result.push_back({allocationPass(names[t]), "X", "allocation"});
   return result;
@@ -138,6 +144,8 @@ std::vector<PassInfo> passesFor(TechniqueMask techniques, const std::vector<std:
 
 std::vector<PassInfo> passesOnRequest() {
   std::vector<PassInfo> result;
+  for (const PassSource& s : sources())
+    if (s.info.group == kSamples) result.push_back(s.info);
   for (const PassSource& s : dataSources()) result.push_back(s.info);
   for (const PassSource& s : lightSources()) result.push_back(s.info);
   return result;

@@ -20,6 +20,7 @@ namespace wardmis {
 namespace {
 
 constexpr uint32_t kLeastForPilot = 16;  // samples: the pilot of `auto` does not pay with fewer
+constexpr uint32_t kUsualSamples = 64;
 constexpr double kPilotTime = 1.0 / 16;  // of a time limit, for the pilot of `auto`
 // What a sample of a coarse pilot costs, in samples of the image: its hits draw kSets of each technique.
 constexpr double kCoarseSample = double(kSets) / (kCoarse * kCoarse);
@@ -32,8 +33,8 @@ bool coarse(const RenderSettings& s) { return s.allocation == Allocation::kAuto;
 // choice costs grows with the samples that follow it, and falls with the pilot's.
 uint32_t pilotOf(const RenderSettings& s, uint32_t target) {
   if (!coarse(s)) return std::min(s.pilotSpp, target / 2);
-  constexpr double kUsual = 64;  // samples for which pilotSpp is meant
-  const double growth = s.open() ? 1 : std::max(1.0, std::sqrt(target / kUsual));
+  const double growth =
+      s.open() ? 1 : std::max(1.0, std::sqrt(target / double(kUsualSamples)));  // pilotSpp is for these
   const uint32_t most = target / kLeastForPilot;
   return static_cast<uint32_t>(std::min(s.pilotSpp * growth, double(most)));
 }
@@ -88,8 +89,8 @@ class Run {
   Stop stop() const { return observer_.stop != nullptr ? observer_.stop->load(std::memory_order_relaxed) : Stop::kNo; }
   bool stopped() const { return stop() != Stop::kNo; }
 
-  // Adds `samples` to every pixel. A stop that keeps the image lets the pass end; one that discards it does not: false.
-  bool pass(uint32_t samples, Pilot<K>* pilot) {
+  // Adds `samples` to the image. A stop that keeps the image lets the pass end; one that discards it does not: false.
+  bool pass(double samples, Pilot<K>* pilot) {
     std::atomic<int> done{0};
     const double total = tilesOf(*film_);
     Ticker ticker([&] { report(pilot != nullptr, samples * done.load() / total); });
@@ -98,7 +99,9 @@ class Run {
         [&] { return stop() == Stop::kDiscard; });
     ticker.finish();  // it reads what is written now
     if (stop() == Stop::kDiscard) return false;
-    film_->samples += samples;
+    const auto whole = static_cast<uint32_t>(samples);
+    film_->samples += whole;
+    film_->partial = static_cast<float>(samples - whole);
     return true;
   }
 
@@ -106,7 +109,7 @@ class Run {
   void until(uint32_t target, Pilot<K>* pilot) {
     uint32_t chunk = 1;
     const double limit = settings_.seconds * (apart_ > 0 && pilot != nullptr ? kPilotTime : 1);
-    while (film_->samples < target && !stopped() && !isGoodEnough()) {
+    while (film_->samples < target && !over()) {
       const double before = seconds();
       chunk = std::min(chunk, target - film_->samples);
       if (observer_.checkpoint) {
@@ -119,10 +122,14 @@ class Run {
       if (!pass(chunk, pilot)) return;
       if (settings_.targetError > 0 && ofImage) estimate();
       const double after = seconds(), perSample = (after - before) / chunk;
+      perSample_ = perSample;
       report(pilot != nullptr, 0);
       if (ofImage) checkpoint();
       if (observer_.image && pilot == nullptr) observer_.image(*film_);
-      if (limit > 0 && after + perSample > limit) return;
+      if (limit > 0 && after + perSample > limit) {
+        timeIsUp_ = true;
+        return;
+      }
       // passes of about half a second: long enough to cost nothing, short enough to watch
       double next = std::min({2.0 * chunk, std::max(1.0, 0.5 / std::max(perSample, 1e-9)), 4096.0});
       if (limit > 0) next = std::min(next, std::max(1.0, (limit - after) / perSample));
@@ -130,9 +137,24 @@ class Run {
     }
   }
 
+  // What is left of the time, which is too short for a sample of each pixel: one of so many pixels as there is time
+  // for.
+  void useTime() {
+    constexpr double kLeast = 0.01;
+    const double part = timeIsUp_ ? (settings_.seconds - seconds()) / perSample_ : 0;
+    if (!(part > kLeast) || stopped() || isGoodEnough()) return;
+    if (pass(std::min(part, 0.999), nullptr) && observer_.image) observer_.image(*film_);
+  }
+
   // What follows is added to this film. apart: samples of a pilot on a film of its own, before the image's; each: what
   // one of these takes, in samples of the image.
-  void onto(FilmBuffer& film, uint32_t apart, double each) { film_ = &film, apart_ = apart, each_ = each; }
+  void onto(FilmBuffer& film, uint32_t apart, double each) {
+    film_ = &film, apart_ = apart, each_ = each;
+    timeIsUp_ = false;
+  }
+
+  // Whether nothing more is wanted.
+  bool over() const { return stopped() || isGoodEnough() || timeIsUp_; }
 
   const std::optional<EstimatedError>& error() const { return error_; }
 
@@ -195,6 +217,8 @@ class Run {
   ErrorEstimate estimate_;
   std::optional<EstimatedError> error_;
   uint32_t lookedAt_ = 0;
+  double perSample_ = 0;   // seconds, of the last pass
+  bool timeIsUp_ = false;  // but for a part of a sample
   Clocks start_;
   tbb::enumerable_thread_specific<Counts> counts_;
 };
@@ -294,7 +318,20 @@ FilmBuffer renderWith(const BuiltScene& built, const RenderSettings& settings, S
     run.until(std::min(pilotSpp - first, count), nullptr);
     setup.input.perPixel = &map;
   }
+  // Where the number of samples is not known before, shares are as for a usual one.
+  const uint32_t expected = settings.open() ? std::min(count, kUsualSamples) : count;
+  if (const uint32_t surveyed = settings.sharesPixels() ? PixelSurvey::samplesFor(expected) : 0) {
+    PixelSurvey survey;
+    buffer.rays.resize(buffer.pixels.size());
+    run.until(surveyed / 2, nullptr);
+    survey.half(buffer);
+    run.until(surveyed, nullptr);
+    const bool enough = settings.seconds <= 0 || run.seconds() < 0.5 * settings.seconds;
+    if (!run.over() && enough) buffer.shares = survey.shares(buffer, expected, stats.pixelGain);
+    buffer.rays = {};
+  }
   run.until(count, nullptr);
+  run.useTime();
   const Clocks time = run.clocks();
   stats.renderSeconds = time.wall - stats.pilotSeconds;
   stats.renderCpuSeconds = time.cpu - stats.pilotCpuSeconds;
@@ -317,6 +354,11 @@ PathLimits RenderSettings::limits() const {
   limits.bounces[kGlossyBounce] = maxGlossy, limits.bounces[kDiffuseBounce] = maxDiffuse;
   limits.bounces[kTransmissionBounce] = maxTransmission;
   return limits;
+}
+
+bool RenderSettings::sharesPixels() const {
+  if (part || pixels == PixelSamples::kEven) return false;  // parts of an image do not know of each other
+  return pixels == PixelSamples::kByError || (allocation == Allocation::kAuto && sampler != SamplerType::kStratified);
 }
 
 double pilotApart(const RenderSettings& s) {
@@ -344,6 +386,10 @@ std::string_view name(Integrator i) { return i == Integrator::kDirect ? "direct"
 std::string_view name(SamplerType s) {
   constexpr std::string_view names[] = {"independent", "stratified", "sobol"};
   return names[static_cast<int>(s)];
+}
+std::string_view name(PixelSamples p) {
+  constexpr std::string_view names[] = {"even", "by-error", "auto"};
+  return names[static_cast<int>(p)];
 }
 std::string_view name(FilterType f) {
   constexpr std::string_view names[] = {"box", "gaussian", "blackman-harris"};

@@ -27,6 +27,11 @@ std::string_view name(FilterType);
 // machine.
 enum class CostFrom : uint8_t { kRays, kGiven, kMeasured };
 
+// How camera samples are shared between pixels: as many for all, more where they bring more (film/pixel_shares.h), or
+// the latter where the allocation is `auto`, too.
+enum class PixelSamples : uint8_t { kEven, kByError, kAuto };
+std::string_view name(PixelSamples);
+
 // Of a lobe, cosine and light sample, any unit.
 struct GivenCost {
   float lobe = 1, cosine = 1, light = 1;
@@ -42,6 +47,7 @@ struct SampleRange {
 struct RenderSettings {
   bool data = false, light = false;  // what DataPixel and LightPixel have is wanted
   Allocation allocation = Allocation::kAuto;
+  PixelSamples pixels = PixelSamples::kAuto;
   std::optional<Weights> weights;  // none: what the paper pairs with the allocation
   Integrand integrand = Integrand::kSplit;
   Integrator integrator = Integrator::kPath;
@@ -69,6 +75,7 @@ struct RenderSettings {
   // Whether the number of its samples is not known before.
   bool open() const { return seconds > 0 || targetError > 0; }
   SampleRange range() const { return part.value_or(SampleRange{0, spp}); }  // without a limit of time
+  bool sharesPixels() const;                                                // unevenly, if that pays
   Weights weightRule() const { return weights.value_or(paperWeights(allocation)); }
 };
 
@@ -93,7 +100,8 @@ struct Statistics {
   bool pilotKept = false;                   // its samples are part of the image
   std::vector<float> cost;                  // of a sample of each technique, that the allocation took into account
   float costOfHit = 0;                      // a share of a hit's own, in the same unit
-  std::optional<EstimatedError> error;      // the last estimate, where an error is aimed at
+  double pixelGain = 1;  // of error x time, that unequal samples of pixels are to bring; 1: all have as many
+  std::optional<EstimatedError> error;  // the last estimate, where an error is aimed at
 };
 
 struct Clocks {

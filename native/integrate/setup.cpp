@@ -195,7 +195,7 @@ FilmBuffer RenderSetup<K>::film(int side) const {
 int tilesOf(const FilmBuffer& film) { return tilesAcross(film.width) * tilesAcross(film.height); }
 
 template <size_t K>
-void renderTiles(const RenderSetup<K>& setup, FilmBuffer& film, uint32_t samples, Pilot<K>* pilot,
+void renderTiles(const RenderSetup<K>& setup, FilmBuffer& film, double samples, Pilot<K>* pilot,
                  const std::function<Counts&()>& counts, std::atomic<int>& tilesDone,
                  const std::function<bool()>& discard) {
   tbb::parallel_for(
@@ -208,8 +208,8 @@ void renderTiles(const RenderSetup<K>& setup, FilmBuffer& film, uint32_t samples
                             ty * kTileSize,
                             std::min(film.width, (tx + 1) * kTileSize),
                             std::min(film.height, (ty + 1) * kTileSize),
-                            film.first + film.samples,
-                            samples};
+                            double(film.first) + film.samples,
+                            double(film.first) + film.samples + samples};
             setup.kernel(setup.input, tile, film, pilot, counts());
             ++tilesDone;
           }
@@ -236,10 +236,10 @@ double cpuSeconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-#define WARDMIS_INSTANTIATE(K)                                                          \
-  template struct RenderSetup<K>;                                                       \
-  template void renderTiles<K>(const RenderSetup<K>&, FilmBuffer&, uint32_t, Pilot<K>*, \
-                               const std::function<Counts&()>&, std::atomic<int>&, const std::function<bool()>&);
+#define WARDMIS_INSTANTIATE(K)                                                                                         \
+  template struct RenderSetup<K>;                                                                                      \
+  template void renderTiles<K>(const RenderSetup<K>&, FilmBuffer&, double, Pilot<K>*, const std::function<Counts&()>&, \
+                               std::atomic<int>&, const std::function<bool()>&);
 WARDMIS_TECHNIQUE_COUNTS(WARDMIS_INSTANTIATE)
 
 }  // namespace wardmis

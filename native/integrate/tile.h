@@ -270,7 +270,9 @@ void renderTile(const KernelInput<K>& in, const Tile& tile, FilmBuffer& film, Pi
       DataPixel* data = film.data.empty() ? nullptr : &film.data[index];
       LightPixel* light = film.light.empty() ? nullptr : &film.light[index];
       PilotPixel* pilotPixel = pilot != nullptr ? &pilot->pixels[index] : nullptr;
-      for (uint32_t s = tile.firstSample; s < tile.firstSample + tile.samples; ++s) {
+      const uint64_t raysBefore = film.rays.empty() ? 0 : counts.allRays();
+      const uint32_t end = film.shares.count(index, tile.last);
+      for (uint32_t s = film.shares.count(index, tile.first); s < end; ++s) {
         const Vec2f offset = in.filter.sample(Sampler::Visit(in.sampler, key, 0, s).film(Dimensions<K>::kFilmPoint));
         const Vec2f lens = in.camera.needsLens() ? in.sampler.get2D(key, Dimensions<K>::kLensPoint, s) : Vec2f{};
         float time = kMiddle;
@@ -311,6 +313,7 @@ void renderTile(const KernelInput<K>& in, const Tile& tile, FilmBuffer& film, Pi
                                                 &alone, nullptr, nullptr, nullptr, nullptr, counts);
                     });
       }
+      if (!film.rays.empty()) film.rays[index] += static_cast<uint32_t>(counts.allRays() - raysBefore);
     }
 }
 

@@ -410,6 +410,7 @@ class Study {
                    path = plan_.folder / ("reference" + suffix + ".exr");
     makeFolder(folder);
     s.allocation = Allocation::kEqual;
+    s.pixels = PixelSamples::kEven;
     s.weights.reset();
     s.sampler = SamplerType::kSobol;
     s.spp = referenceSpp_;

@@ -38,7 +38,7 @@ def parse():
     parser.add_argument("--watch-stdin", action="store_true")
     parser.add_argument("--check", action="store_true")
     options = (
-        "baseline budget-seconds reference reference-time target title resolution threads progress allocation weights "
+        "baseline budget-seconds reference reference-time target title resolution threads progress allocation pixels weights "
         "integrand integrator sampler samples-per-hit pilot-spp min-fraction max-depth max-diffuse max-glossy max-transmission max-transparent cost"
     )
     for option in options.split():

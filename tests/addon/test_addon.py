@@ -62,6 +62,7 @@ class Settings(unittest.TestCase):
     def test_choices_and_defaults_are_those_of_the_command(self):
         for option, name, items in (
             ("--allocation", "allocation", properties.ALLOCATIONS),
+            ("--pixels", "pixels", properties.PIXELS),
             ("--weights", "weights", properties.WEIGHTS),
             ("--integrand", "integrand", properties.INTEGRANDS),
             ("--integrator", "integrator", properties.INTEGRATORS),
