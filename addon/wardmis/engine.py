@@ -203,7 +203,8 @@ class _Render:
     def _arguments(self) -> list[str]:
         settings, render = self.scene.wardmis, self.scene.render
         arguments = [self.scene_path, "-o", self.image_path, f"--layer={self.layer.name}"]
-        arguments += ["--passes", passes_option(self.layer), "--progress", "json", "--watch-stdin"]
+        arguments += ["--passes", passes_option(self.layer), "--uncompressed"]
+        arguments += ["--progress", "json", "--watch-stdin"]
         if not bpy.app.background:  # nobody watches
             arguments += ["--preview", self.preview_path]
         arguments += ["--integrand", settings.integrand, "--integrator", settings.integrator]

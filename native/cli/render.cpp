@@ -12,6 +12,7 @@
 #include "cli/options.h"
 #include "cli/part.h"
 #include "cli/paths.h"
+#include "cli/preview.h"
 #include "cli/session.h"
 #include "cli/settings.h"
 #include "cli/statistics.h"
@@ -36,7 +37,7 @@ struct Options {
   std::string scene, output, stats, progress = "auto", preview, layer = "ViewLayer", passes, filter = "scene",
                                     resolution, samples;
   double previewInterval = 1;
-  bool watchStdin = false, noDefaults = false;
+  bool watchStdin = false, noDefaults = false, uncompressed = false;
   SettingOptions settings;
   // what ends it, and its seed
   uint32_t spp = 64;
@@ -173,17 +174,13 @@ int run(Options& o) {
     reporter.event(event(p));
     reporter.bar(p.fraction, line(p), p.seconds, p.left);
   };
-  auto lastPreview = Clock::now();
-  bool previewed = false;
+  Preview preview(o.preview, o.previewInterval, scene.film.x1 - scene.film.x0, scene.film.y1 - scene.film.y0);
   if (!o.preview.empty())
-    observer.image = [&](const FilmBuffer& film) {
-      if (previewed && since(lastPreview) < o.previewInterval) return;
+    observer.image = [&](const FilmBuffer& film, int side) {
       const std::string list = o.passes.empty() ? "combined" : o.passes;
       const std::vector<PassInfo> passes = choosePasses(list, st.techniques, st.techniqueNames);
-      writeExr(o.preview, toPasses(film, passes, st.techniqueNames, o.layer, scene.zUp), false);
-      reporter.event({{"event", "preview"}, {"path", o.preview}, {"samples", film.samples}});
-      lastPreview = Clock::now();
-      previewed = true;
+      if (preview.show(film, side, passes, st.techniqueNames, o.layer, scene.zUp))
+        reporter.event({{"event", "preview"}, {"path", o.preview}, {"samples", film.samples}});
     };
 
   const FilmBuffer film = render(scene, s, st, observer);
@@ -214,7 +211,7 @@ int run(Options& o) {
               {"defaults", !o.noDefaults}},
              description, statsBefore, countsJson(st.pilotCounts, st.techniqueNames));
   }
-  writeExr(output, image, true);
+  writeExr(output, image, !o.uncompressed);
   const json stats = statisticsJson(o.scene, s, scene, st, film, readSeconds, since(writeStart), since(start));
   if (!o.stats.empty()) writeFile(o.stats, dumped(stats, 2) + '\n');
 
@@ -287,6 +284,7 @@ Verb addRender(CLI::App& app) {
       "of combined,depth,normal,albedo,variance,allocation (default: all of these), samples,position,uv,object-index,"
       "material-index,emission,environment, diffuse-direct,diffuse-indirect,diffuse-color and likewise for "
       "glossy and transmission; of the latter also PASS=NAME, its name in the file");
+  app.add_flag("--uncompressed", o->uncompressed, "write the EXR without compression: larger, and sooner there");
   app.add_option("--stats", o->stats, "write statistics to this JSON file");
   app.add_option("--progress", o->progress, "bar, json or none")
       ->check(CLI::IsMember({"auto", "bar", "json", "none"}))

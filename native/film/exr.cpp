@@ -5,13 +5,14 @@
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
-#include <OpenEXR/ImfStdIO.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <thread>
 
 #include "film/write_file.h"
@@ -19,6 +20,30 @@
 
 namespace wardmis {
 namespace {
+
+// A file in memory. The library's own, of a std::ostringstream, grows by copying and is copied at the end.
+class MemoryStream : public Imf::OStream {
+ public:
+  explicit MemoryStream(size_t expected) : Imf::OStream("memory") { bytes_.reserve(expected); }
+
+  void write(const char c[], int n) override {
+    const auto count = static_cast<size_t>(n);
+    const size_t over = std::min(count, bytes_.size() - at_);
+    std::copy_n(c, over, bytes_.begin() + static_cast<ptrdiff_t>(at_));
+    bytes_.append(c + over, count - over);
+    at_ += count;
+  }
+  uint64_t tellp() override { return at_; }
+  void seekp(uint64_t to) override {
+    if (to > bytes_.size()) bytes_.resize(to);
+    at_ = to;
+  }
+  std::string take() { return std::move(bytes_); }
+
+ private:
+  std::string bytes_;
+  size_t at_ = 0;
+};
 
 // Encoded in memory, so that every error of the disk shows in our own write() and close(), none in a destructor.
 std::string encode(const ExrImage& image, bool compress) {
@@ -37,13 +62,15 @@ std::string encode(const ExrImage& image, bool compress) {
   };
   insert(image.channels, Imf::FLOAT), insert(image.words, Imf::UINT);
   for (const auto& [name, value] : image.attributes) header.insert(name, Imf::StringAttribute(value));
-  Imf::StdOSStream stream;
+  constexpr size_t kHeader = 1 << 16;
+  MemoryStream stream(kHeader + sizeof(float) * static_cast<size_t>(image.width) * static_cast<size_t>(image.height) *
+                                    (image.channels.size() + image.words.size()));
   {
     Imf::OutputFile file(stream, header);
     file.setFrameBuffer(frame);
     file.writePixels(image.height);
   }
-  return stream.str();
+  return stream.take();
 }
 
 std::vector<std::pair<std::string, std::string>> textsOf(const Imf::Header& header) {

@@ -74,7 +74,7 @@ struct FilmBuffer {
   bool transparent = false;            // without the sky
   uint32_t first = 0;                  // of the image's camera samples, the first that is here
   uint32_t samples = 0;                // from there on, where pixels share them evenly; of a pixel: count()
-  float partial = 0;                   // of one more, that so many of the pixels have
+  double partial = 0;                  // of one more, that so many of the pixels have
   PixelShares shares;                  // of the pixels
 
   FilmBuffer() = default;
@@ -93,14 +93,15 @@ struct FilmBuffer {
 
   // Samples that a pixel has.
   uint32_t count(size_t index) const {
-    return shares.count(index, double(first) + samples + double(partial)) - shares.count(index, first);
+    return shares.count(index, double(first) + samples + partial) - shares.count(index, first);
   }
 
   // p: one of `pixels`.
   uint32_t count(const Pixel& p) const { return count(static_cast<size_t>(&p - pixels.data())); }
 
   Rgb mean(const Pixel& p) const {
-    const double s = samples > 0 ? 1.0 / count(p) : 0;
+    const uint32_t n = count(p);
+    const double s = n > 0 ? 1.0 / n : 0;
     return {static_cast<float>(p.sum[0] * s), static_cast<float>(p.sum[1] * s), static_cast<float>(p.sum[2] * s)};
   }
   // The picture: colour, which alpha is in already, and alpha.

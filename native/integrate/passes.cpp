@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "integrate/passes.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cctype>
 #include <functional>
@@ -21,7 +23,8 @@ struct PassSource {
 
 template <class Sum>  // of three channels
 Value meanOf(const FilmBuffer& f, size_t pixel, const Sum& sum) {
-  const double s = f.samples > 0 ? 1.0 / f.count(pixel) : 0;
+  const uint32_t n = f.count(pixel);
+  const double s = n > 0 ? 1.0 / n : 0;
   return {static_cast<float>(sum[0] * s), static_cast<float>(sum[1] * s), static_cast<float>(sum[2] * s), 0};
 }
 
@@ -154,20 +157,39 @@ std::vector<PassInfo> passesOnRequest() {
 ExrImage toPasses(const FilmBuffer& film, const std::vector<PassInfo>& passes,
                   const std::vector<std::string>& techniqueNames, const std::string& layer, bool zUp) {
   ExrImage image{film.width, film.height, {}, {}};
-  const size_t count = film.pixels.size(), width = static_cast<size_t>(film.width);
+  const size_t count = film.pixels.size(), width = static_cast<size_t>(film.width),
+               height = static_cast<size_t>(film.height);
   for (const PassInfo& pass : passes) {
     const PassSource source = sourceOf(pass, techniqueNames);
     const size_t first = image.channels.size();
     for (char c : pass.channels)
       image.channels.push_back({layer + "." + pass.name + "." + c, std::vector<float>(count)});
-    for (size_t i = 0; i < count; ++i) {
-      const size_t row = i / width, flipped = (static_cast<size_t>(film.height) - 1 - row) * width + i % width;
-      Value v = source.get(film, i);
-      if (zUp && (pass.group == "normal" || pass.group == "position")) v = {v[0], -v[2], v[1], 0};
-      for (size_t c = 0; c < pass.channels.size(); ++c) image.channels[first + c].values[flipped] = v[c];
-    }
+    const bool turned = zUp && (pass.group == "normal" || pass.group == "position");
+    tbb::parallel_for(size_t{0}, height, [&](size_t row) {
+      for (size_t x = 0; x < width; ++x) {
+        Value v = source.get(film, row * width + x);
+        if (turned) v = {v[0], -v[2], v[1], 0};
+        for (size_t c = 0; c < pass.channels.size(); ++c)
+          image.channels[first + c].values[(height - 1 - row) * width + x] = v[c];
+      }
+    });
   }
   return image;
+}
+
+ExrImage enlarged(const ExrImage& image, int side, int width, int height) {
+  ExrImage large{width, height, {}, image.attributes};
+  // the film's rows begin at the bottom, the image's at the top
+  const int beyond = image.height * side - height;
+  for (const ExrChannel& c : image.channels) {
+    ExrChannel& to = large.channels.emplace_back(ExrChannel{c.name, {}});
+    to.values.reserve(static_cast<size_t>(width) * static_cast<size_t>(height));
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x)
+        to.values.push_back(c.values[static_cast<size_t>((y + beyond) / side) * static_cast<size_t>(image.width) +
+                                     static_cast<size_t>(x / side)]);
+  }
+  return large;
 }
 
 }  // namespace wardmis

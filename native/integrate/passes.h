@@ -33,4 +33,7 @@ std::vector<PassInfo> passesOnRequest();
 ExrImage toPasses(const FilmBuffer& film, const std::vector<PassInfo>& passes,
                   const std::vector<std::string>& techniqueNames, const std::string& layer, bool zUp);
 
+// Each pixel as a square of `side`, of an image of that size, of which the last ones may lack a part.
+ExrImage enlarged(const ExrImage& image, int side, int width, int height);
+
 }  // namespace wardmis

@@ -21,6 +21,8 @@ namespace {
 
 constexpr uint32_t kLeastForPilot = 16;  // samples: the pilot of `auto` does not pay with fewer
 constexpr uint32_t kUsualSamples = 64;
+constexpr double kWatched = 0.5;  // seconds after which one wants to see more
+constexpr uint32_t kMostParts = 64;
 constexpr double kPilotTime = 1.0 / 16;  // of a time limit, for the pilot of `auto`
 // What a sample of a coarse pilot costs, in samples of the image: its hits draw kSets of each technique.
 constexpr double kCoarseSample = double(kSets) / (kCoarse * kCoarse);
@@ -81,7 +83,7 @@ class Ticker {
 template <size_t K>
 class Run {
  public:
-  Run(const RenderSettings& settings, const RenderObserver& observer, const RenderSetup<K>& setup)
+  Run(const RenderSettings& settings, const RenderObserver& observer, RenderSetup<K>& setup)
       : settings_(settings), observer_(observer), setup_(setup), start_(now()) {}
 
   Clocks clocks() const { return now() - start_; }
@@ -89,7 +91,8 @@ class Run {
   Stop stop() const { return observer_.stop != nullptr ? observer_.stop->load(std::memory_order_relaxed) : Stop::kNo; }
   bool stopped() const { return stop() != Stop::kNo; }
 
-  // Adds `samples` to the image. A stop that keeps the image lets the pass end; one that discards it does not: false.
+  // Adds `samples` to the image; `last`: of the parts of a sample, which makes it a whole one. A stop that keeps the
+  // image lets the pass end; one that discards it does not: false.
   bool pass(double samples, Pilot<K>* pilot) {
     std::atomic<int> done{0};
     const double total = tilesOf(*film_);
@@ -99,10 +102,48 @@ class Run {
         [&] { return stop() == Stop::kDiscard; });
     ticker.finish();  // it reads what is written now
     if (stop() == Stop::kDiscard) return false;
-    const auto whole = static_cast<uint32_t>(samples);
-    film_->samples += whole;
-    film_->partial = static_cast<float>(samples - whole);
+    const double now = film_->partial + samples;
+    film_->samples += static_cast<uint32_t>(now);
+    film_->partial = now - std::floor(now);
     return true;
+  }
+
+  // The same of whole samples, in parts where one of them takes so long that it is to be watched. False also where a
+  // stop has left a sample in part.
+  bool passes(uint32_t samples, Pilot<K>* pilot) {
+    const double seconds = perSample_ * samples * costOf(pilot);
+    // a power of two, whose fractions are exact
+    const uint32_t parts =
+        observer_.image && !settings_.part
+            ? std::bit_ceil(static_cast<uint32_t>(std::clamp(seconds / kWatched, 1.0, double(kMostParts))))
+            : 1;
+    for (uint32_t k = 1; k <= parts; ++k) {
+      if (!pass(double(samples) / parts, pilot)) return false;
+      if (k == parts) break;
+      show();
+      if (stopped() && film_->samples > 0) return false;
+    }
+    return true;
+  }
+
+  // What is there so soon that one sees it at once: images of one sample for a square of pixels, each finer as long as
+  // the next is ready in a moment. They are no part of the image, and not counted.
+  void glance(const std::function<FilmBuffer(int side)>& filmOf, double pixels) {
+    constexpr double kMoment = 0.25, kFirst = 1 << 13;  // seconds; samples
+    int side = kCoarse;
+    while (pixels / (side * side) > kFirst) side *= 2;
+    while (side > kCoarse && !stopped()) {
+      FilmBuffer film = filmOf(side);
+      const double before = seconds();
+      onto(film, 0, 1, side);
+      if (!pass(1, nullptr)) return;
+      perSample_ = (seconds() - before) * side * side;
+      show();
+      do side /= 2;
+      while (side > kCoarse && perSample_ / (side * side) < 0.25 * kMoment);
+      if (perSample_ / (side * side) > kMoment) break;
+    }
+    counts_.clear();
   }
 
   // Passes until `target` samples or, with a time limit, until the next pass would end too late.
@@ -119,13 +160,13 @@ class Run {
       const bool ofImage = pilot == nullptr || apart_ == 0;
       if (settings_.targetError > 0 && ofImage)
         chunk = std::min(chunk, ErrorEstimate::next(film_->samples) - film_->samples);
-      if (!pass(chunk, pilot)) return;
+      if (!passes(chunk, pilot)) return;
       if (settings_.targetError > 0 && ofImage) estimate();
       const double after = seconds(), perSample = (after - before) / chunk;
-      perSample_ = perSample;
+      perSample_ = perSample / costOf(pilot);
       report(pilot != nullptr, 0);
       if (ofImage) checkpoint();
-      if (observer_.image && pilot == nullptr) observer_.image(*film_);
+      show();
       if (limit > 0 && after + perSample > limit) {
         timeIsUp_ = true;
         return;
@@ -143,13 +184,14 @@ class Run {
     constexpr double kLeast = 0.01;
     const double part = timeIsUp_ ? (settings_.seconds - seconds()) / perSample_ : 0;
     if (!(part > kLeast) || stopped() || isGoodEnough()) return;
-    if (pass(std::min(part, 0.999), nullptr) && observer_.image) observer_.image(*film_);
+    if (pass(std::min(part, 0.999), nullptr)) show();
   }
 
   // What follows is added to this film. apart: samples of a pilot on a film of its own, before the image's; each: what
-  // one of these takes, in samples of the image.
-  void onto(FilmBuffer& film, uint32_t apart, double each) {
+  // one of these takes, in samples of the image; side: of the film's pixels, in the image's.
+  void onto(FilmBuffer& film, uint32_t apart, double each, int side = 1) {
     film_ = &film, apart_ = apart, each_ = each;
+    setup_.input.side = side;
     timeIsUp_ = false;
   }
 
@@ -175,6 +217,12 @@ class Run {
     start_ += now() - before;
   }
 
+  double costOf(const Pilot<K>* pilot) const { return pilot != nullptr && apart_ > 0 ? each_ : 1; }
+
+  void show() {
+    if (observer_.image) observer_.image(*film_, setup_.input.side);
+  }
+
   void estimate() {
     if (ErrorEstimate::next(film_->samples - 1) != film_->samples) return;
     if (const auto error = estimate_.look(*film_)) error_ = error, lookedAt_ = film_->samples;
@@ -192,13 +240,13 @@ class Run {
 
   // partial: samples of the running pass, in mean over the pixels.
   void report(bool pilot, double partial) {
-    if (!observer_.progress) return;
+    if (!observer_.progress || (setup_.input.side > 1 && !pilot)) return;
     Progress p;
     p.pilot = pilot;
     p.samples = film_->samples;
     p.of = settings_.open() ? 0 : countOf(settings_);
     p.seconds = seconds();
-    const double extra = apart_ * each_, here = double(film_->samples) + partial;
+    const double extra = apart_ * each_, here = film_->samples + film_->partial + partial;
     const double done = !pilot ? here + extra : apart_ > 0 ? here * each_ : here;
     p.fraction = fraction(done, extra, p.seconds);
     if (settings_.targetError > 0 && !error_ && settings_.seconds <= 0)
@@ -210,7 +258,7 @@ class Run {
 
   const RenderSettings& settings_;
   const RenderObserver& observer_;
-  const RenderSetup<K>& setup_;
+  RenderSetup<K>& setup_;
   FilmBuffer* film_ = nullptr;
   uint32_t apart_ = 0;
   double each_ = 0;
@@ -280,6 +328,14 @@ FilmBuffer renderWith(const BuiltScene& built, const RenderSettings& settings, S
     stats.cost.assign(cost.technique.begin(), cost.technique.end()), stats.costOfHit = cost.hit;
     stats.pilotSeconds = time.wall, stats.pilotCpuSeconds = time.cpu;
   };
+  // A film with all that is shown of it.
+  const auto filmOf = [&](int side) {
+    FilmBuffer film = setup.film(side);
+    if (settings.data) film.data.resize(film.pixels.size());
+    if (settings.light) film.light.resize(film.pixels.size());
+    return film;
+  };
+  if (observer.image) run.glance(filmOf, double(frame.x1 - frame.x0) * (frame.y1 - frame.y0));
   if (stats.allocated && settings.costFrom == CostFrom::kMeasured) cost = measureCost(built, settings).perSample<K>();
   // A pilot that is no part of these samples is made alike for all parts of an image.
   const uint32_t first = settings.range().from, count = countOf(settings);
@@ -287,14 +343,12 @@ FilmBuffer renderWith(const BuiltScene& built, const RenderSettings& settings, S
   const bool apart = stats.allocated && (coarse(settings) || first > 0 || count < pilotSpp);
   if (apart) {
     const int side = coarse(settings) ? kCoarse : 1;
-    FilmBuffer film = setup.film(side);
-    run.onto(film, pilotSpp, coarse(settings) ? kCoarseSample : 1);
+    FilmBuffer film = filmOf(side);
+    run.onto(film, pilotSpp, coarse(settings) ? kCoarseSample : 1, side);
     // fractions must not depend on the points that they are used for, nor a hit's two samples on each other
     const Sampler own = setup.input.sampler;
     if (coarse(settings)) setup.drawFrom({SamplerType::kIndependent, ~settings.seed, 1});
-    setup.input.side = side;
     allocateFrom(film, side);
-    setup.input.side = 1;
     setup.drawFrom(own);
     pilotDone();
     stats.pilotCounts = run.counts();
@@ -304,10 +358,8 @@ FilmBuffer renderWith(const BuiltScene& built, const RenderSettings& settings, S
       stats.leftOut.emplace_back(kNoPilot);
     }
   }
-  FilmBuffer buffer = setup.film();
+  FilmBuffer buffer = filmOf(1);
   buffer.first = first;
-  if (settings.data) buffer.data.resize(buffer.pixels.size());
-  if (settings.light) buffer.light.resize(buffer.pixels.size());
   if (built.catchers) buffer.catchers.resize(buffer.pixels.size());
   run.onto(buffer, stats.allocated && apart ? pilotSpp : 0, coarse(settings) ? kCoarseSample : 1);
   if (stats.pilotKept && !apart) {
@@ -358,6 +410,7 @@ PathLimits RenderSettings::limits() const {
 
 bool RenderSettings::sharesPixels() const {
   if (part || pixels == PixelSamples::kEven) return false;  // parts of an image do not know of each other
+  if (!open() && PixelSurvey::samplesFor(spp) == 0) return false;
   return pixels == PixelSamples::kByError || (allocation == Allocation::kAuto && sampler != SamplerType::kStratified);
 }
 

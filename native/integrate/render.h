@@ -125,7 +125,10 @@ enum class Stop : int { kNo = 0, kKeep, kDiscard };  // stop, keeping the image 
 struct RenderObserver {
   std::function<void(const Statistics&)> started;  // needs and what is left out are known
   std::function<void(const Progress&)> progress;
-  std::function<void(const FilmBuffer&)> image;  // between passes: the film is at rest
+  // Between passes: the film, at rest, whose pixels are squares of `side` pixels of the image. A few coarse ones come
+  // first, then the pilot's if it is no part of the image. Of a long pass the parts are seen, and there may be pixels
+  // without samples among them.
+  std::function<void(const FilmBuffer&, int side)> image;
   // At 1, 2, 4, 8 ... samples and the last: the film, the time so far from the pilot's start on, what was counted. The
   // time that it takes itself does not count. Without a limit of time alone.
   std::function<void(const FilmBuffer&, const Clocks&, const Counts&)> checkpoint;

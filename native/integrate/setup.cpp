@@ -198,6 +198,7 @@ template <size_t K>
 void renderTiles(const RenderSetup<K>& setup, FilmBuffer& film, double samples, Pilot<K>* pilot,
                  const std::function<Counts&()>& counts, std::atomic<int>& tilesDone,
                  const std::function<bool()>& discard) {
+  const double first = film.first + film.samples + film.partial;
   tbb::parallel_for(
       tbb::blocked_range2d<int>(0, tilesAcross(film.height), 1, 0, tilesAcross(film.width), 1),
       [&](const auto& range) {
@@ -208,8 +209,8 @@ void renderTiles(const RenderSetup<K>& setup, FilmBuffer& film, double samples, 
                             ty * kTileSize,
                             std::min(film.width, (tx + 1) * kTileSize),
                             std::min(film.height, (ty + 1) * kTileSize),
-                            double(film.first) + film.samples,
-                            double(film.first) + film.samples + samples};
+                            first,
+                            first + samples};
             setup.kernel(setup.input, tile, film, pilot, counts());
             ++tilesDone;
           }

@@ -72,7 +72,7 @@ class Comparing(ComparisonTest):
         pairs = dict(itertools.pairwise(arguments))
         self.assertEqual(arguments[0], "converge")
         self.assertEqual(pairs["--weights"], "auto")
-        self.assertTrue(pairs["--configuration"].startswith("scene:allocation=albedo,weights=power,"))
+        self.assertTrue(pairs["--configuration"].startswith("scene:allocation=albedo,pixels=auto,weights=power,"))
         for option, value in (
             ("--max-depth", "3"),
             ("--seeds", "3"),
@@ -89,7 +89,7 @@ class Comparing(ComparisonTest):
         self.scene.wardmis.weights = "nonbalance"
         wardmis.compare(self.folder, configurations=["equal", "scene"], cycles=False, **SMALL)
         own = next(word for word in self.calls()[-1] if word.startswith("scene:"))
-        self.assertTrue(own.startswith("scene:weights=nonbalance,"), own)
+        self.assertTrue(own.startswith("scene:pixels=auto,weights=nonbalance,"), own)
 
     def test_budget_is_shared_with_cycles(self):
         """WardMIS' half decides on the samples, and Cycles has as many where they fit into its own."""

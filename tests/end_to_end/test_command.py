@@ -362,6 +362,13 @@ class Image(CommandTest):
         self.assertIn("gives light", self.run_command("render", scene, "-o", self.out, "--spp", "1").stderr)
 
 
+def close_pipes(process):
+    process.kill()
+    process.wait()
+    for stream in (process.stdout, process.stderr):
+        stream.close()
+
+
 class Progress(CommandTest):
     def test_json_lines(self):
         done = self.render(
@@ -390,6 +397,32 @@ class Progress(CommandTest):
         self.assertEqual(set(exr.read(self.folder / "p.exr").passes), {"Combined"})
         self.assertEqual((last["path"], last["samples"]), (str(self.out), 16))
         self.assertEqual(last["stats"]["samples_per_pixel"], 16)
+
+    def test_something_is_seen_at_once(self):
+        """Of a sample that takes seconds coarse images are there before it, and its parts, without holes."""
+        preview = self.folder / "p.exr"
+        command = [BINARY, "render", self.scene(), "-o", self.out, "--resolution", "1200x800", "--threads", "1"]
+        command += ["--spp", "1", "--samples-per-hit", "6", "--progress", "json", "--preview", preview]
+        command += ["--preview-interval", "0"]
+        process = subprocess.Popen([*map(str, command)], text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.addCleanup(close_pipes, process)
+        means, dark, seconds, began = [], [], [], None
+        for line in process.stdout:
+            event = json.loads(line)
+            if event["event"] == "start":
+                began = time.monotonic()
+            if event["event"] == "preview":
+                seconds.append(time.monotonic() - began)
+                image = combined(preview)[..., :3]
+                self.assertEqual(image.shape, (800, 1200, 3))
+                means.append(float(np.minimum(image, 1).mean()))
+                dark.append(float((image == 0).all(axis=2).mean()))
+        self.assertEqual(process.wait(), 0)
+        self.assertGreater(len(means), 3)
+        final = combined(self.out)[..., :3]
+        np.testing.assert_allclose(means, np.minimum(final, 1).mean(), rtol=0.05)
+        np.testing.assert_allclose(dark, (final == 0).all(axis=2).mean(), atol=0.05)
+        self.assertLess(seconds[0], 0.25 * seconds[-1])
 
     def test_error_is_an_event_too(self):
         done = self.refused(4, "render", self.folder / "none.glb", "-o", self.out, "--progress", "json")

@@ -151,6 +151,33 @@ TEST(Render, SharedPixelsDoNotDependOnThreads) {
   }
 }
 
+// A sample in parts, each for other pixels, between which one can look, is the sample.
+TEST(Render, PartsOfASampleMakeIt) {
+  const Scene scene = mixedScene();
+  const RenderSettings s = quick();
+  const BuiltScene built(scene, 2);
+  const RenderSetup<3> setup(built, s);
+  Counts counts;
+  std::atomic<int> tiles{0};
+  const auto rendered = [&](const std::vector<double>& parts) {
+    FilmBuffer film = setup.film();
+    for (double part : parts) {
+      withThreads(1,
+                  [&] { renderTiles<3>(setup, film, part, nullptr, [&]() -> Counts& { return counts; }, tiles, {}); });
+      const double now = film.partial + part;
+      film.samples += static_cast<uint32_t>(now), film.partial = now - std::floor(now);
+    }
+    return film;
+  };
+  const FilmBuffer whole = rendered({1, 1}), parts = rendered({0.25, 0.25, 0.25, 0.25, 0.5, 0.5});
+  EXPECT_TRUE(same(whole, parts));
+  EXPECT_EQ(counts.cameraRays, 4 * whole.pixels.size());
+  const FilmBuffer begun = rendered({1, 0.25});
+  size_t once = 0;
+  for (const Pixel& p : begun.pixels) once += begun.count(p) == 1 ? 1 : 0;
+  EXPECT_NEAR(double(once) / double(begun.pixels.size()), 0.75, 0.1);
+}
+
 // More samples where they bring more: the image's expectation is the same (|z| < 4 for each quarter of it: false alarm
 // rate 2.5e-4), the rays are as many, and the error is less. Counts that depended on the samples which they weigh would
 // make it darker.
@@ -725,8 +752,8 @@ TEST(Render, StopsWhenAsked) {
     std::atomic<Stop> stop{Stop::kNo};
     RenderObserver observer;
     observer.stop = &stop;
-    observer.image = [&](const FilmBuffer& f) {
-      if (f.samples > s.pilotSpp) stop = how;
+    observer.image = [&](const FilmBuffer& f, int side) {
+      if (side == 1 && f.samples > s.pilotSpp) stop = how;
     };
     Statistics stats;
     const FilmBuffer film = render(scene, s, stats, observer);
