@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The scenes of ./dev bench, in Blender: `blender --background --addons wardmis --python blend/bench_scenes.py -- DIR NAME...`
 
-Those of blend/ as they are or with one thing changed, and rooms of shaders that both renderers have alike."""
+Those of blend/ as they are or with one thing changed, rooms of shaders that both renderers have alike, and those of which
+there is a number of something, as in lamps-100."""
 
 import math
 import sys
@@ -30,7 +31,11 @@ from studio import principled  # noqa: E402
 
 def main(folder, names):
     for name in names:
-        SCENES[name]()
+        kind, _, number = name.rpartition("-")
+        if kind in NUMBERED:
+            NUMBERED[kind](int(number))
+        else:
+            SCENES[name]()
         bpy.ops.wm.save_as_mainfile(filepath=str(Path(folder) / f"{name}.blend"), compress=True)
 
 
@@ -128,6 +133,68 @@ def image_sky():
     add_camera((0, -7, 3.2), (0, 0, 0.8), 50)
 
 
+def grid(side):
+    """A square of side x side cells over [-1, 1]: its points, and its faces of three corners."""
+    line = np.linspace(-1, 1, side + 1)
+    points = np.stack([*(a.ravel() for a in np.meshgrid(line, line)), np.zeros((side + 1) ** 2)], axis=-1)
+    first = (np.arange(side)[:, None] * (side + 1) + np.arange(side)).ravel()
+    other = first + side + 1
+    return points, np.concatenate(
+        [np.stack(f, axis=-1) for f in ((first, first + 1, other), (first + 1, other + 1, other))]
+    )
+
+
+def lamps(number):
+    """So many of the same power on the whole, above things on a floor."""
+    begun()
+    things()
+    side = round(math.sqrt(number))
+    for x in (np.arange(side) + 0.5) / side * 10 - 5:
+        for y in (np.arange(side) + 0.5) / side * 10 - 5:
+            add_area((x, y, 4), (x, y, 0), 3 / side, 800 / side**2)
+    add_camera((0, -7, 3.2), (0, 0, 0.8), 50)
+
+
+def glowing(number):
+    """A lamp of so many triangles over things on a floor."""
+    begun()
+    things()
+    points, faces = grid(round(math.sqrt(number / 2)))
+    add_mesh("Lamp", points * (1, 1, -1) + (0, 0, 4), faces, emitter("Light", 12))
+    add_camera((0, -7, 3.2), (0, 0, 0.8), 50)
+
+
+def under_a_sky():
+    world = bpy.context.scene.world.node_tree.nodes["Background"]
+    world.inputs["Strength"].default_value = 0.5
+    add_area((-4, -4, 6), (0, 0, 0), 1, 600)
+    add_camera((0, -7, 3.2), (0, 0, 0), 50)
+
+
+def triangles(number):
+    """Hills of so many."""
+    begun()
+    points, faces = grid(round(math.sqrt(number / 2)))
+    x, y = points[:, 0], points[:, 1]
+    points[:, 2] = 0.06 * (np.sin(9 * x) * np.cos(7 * y) + 0.4 * np.sin(61 * x + 3) * np.sin(53 * y))
+    add_mesh("Hills", points * 5, faces, plain("Hills", (0.5, 0.5, 0.4), 0.5))
+    under_a_sky()
+
+
+def instances(number):
+    """So many balls of 360 triangles in a slab."""
+    begun()
+    vertices, faces = sphere_mesh(20, 10)
+    side = round(math.sqrt(number))
+    ball = add_mesh("Ball", np.multiply(vertices, 4 / side), faces, plain("Ball", (0.6, 0.3, 0.2), 0.4), smooth=True)
+    points = (grid(side - 1)[0] if side > 1 else np.zeros((1, 3))) * 5
+    points[:, 2] = np.random.default_rng(1).uniform(-0.3, 0.3, len(points))
+    places = add_mesh("Places", points, [], None)
+    ball.parent, places.instance_type = places, "VERTS"
+    under_a_sky()
+
+
+NUMBERED = {"lamps": lamps, "glowing": glowing, "triangles": triangles, "instances": instances}
 SCENES = {
     "veach": lambda: opened("veach"),
     "veach-direct": lambda: opened("veach", "direct"),

@@ -43,17 +43,20 @@ class Effort:
     percentage: int  # of the scene's resolution
     samples: int  # camera samples per pixel, pilot included
     reference_samples: int
+    equal_time: bool = False  # the time that Cycles takes for these samples, in place of as many samples
 
 
-def wardmis(effort: Effort, allocation: str, samples: int, seed: int) -> dict[str, Any]:
+def wardmis(effort: Effort, allocation: str, samples: int, seed: int, seconds: float | None = None) -> dict[str, Any]:
+    """Stopped by the seconds, where they are given, with pixels as by default."""
+    stop = {"stop_by": "samples", "samples": samples, "pixels": "even"}  # at equal samples
+    if seconds is not None:
+        stop = {"stop_by": "seconds", "seconds": seconds}
     return {
         "render.engine": "WARDMIS",
         "render.resolution_percentage": effort.percentage,
         "wardmis.allocation": allocation,
-        "wardmis.pixels": "even",  # at equal samples
-        "wardmis.stop_by": "samples",
-        "wardmis.samples": samples,
         "wardmis.seed": seed,
+        **{f"wardmis.{name}": value for name, value in stop.items()},
     }
 
 
@@ -130,11 +133,13 @@ def demonstrate(scene: str, out: Path, effort: Effort) -> tuple[list[table.Row],
         f"made {'in this run' if made else 'in an earlier run'} in {truth.seconds:.0f} s; its own noise adds about {noise:.2g} to each relMSE."
     )
     rows, columns = [], []
-    for allocation in ALLOCATIONS:
+    say(f"{blend.name}: Cycles")
+    by_cycles = blender.render(blend, out / f"{scene}-cycles.exr", cycles(effort))
+    seconds = by_cycles.seconds if effort.equal_time else None
+    for allocation in ALLOCATIONS[:2] if effort.equal_time else ALLOCATIONS:
         say(f"{blend.name}: {allocation}")
-        image = blender.render(
-            blend, out / f"{scene}-{allocation}.exr", wardmis(effort, allocation, effort.samples, seed=1)
-        )
+        settings = wardmis(effort, allocation, effort.samples, 1, seconds)
+        image = blender.render(blend, out / f"{scene}-{allocation}.exr", settings)
         row = figures(scene, allocation, image, truth)
         rows.append(row)
         lines = [
@@ -142,8 +147,7 @@ def demonstrate(scene: str, out: Path, effort: Effort) -> tuple[list[table.Row],
             f"{row.seconds:.1f} s, relMSE {row.rel_mse:.4f}",
         ]
         columns.append(Column(allocation, image.exr.passes["Combined"], lines))
-    say(f"{blend.name}: Cycles")
-    image = blender.render(blend, out / f"{scene}-cycles.exr", cycles(effort))
+    image = by_cycles
     same = SCENES.get(scene, Scene()).is_cycles_own
     row = figures(scene, table.CYCLES, image, truth if same else None)
     rows.append(row)
@@ -174,6 +178,7 @@ def main() -> int:
     parser.add_argument("--out", type=Path, default=ROOT / "out" / "demo")
     parser.add_argument("--samples", type=int, default=32, help="camera samples per pixel (%(default)s)")
     parser.add_argument("--reference-samples", type=int, help="of the reference (chosen for each scene)")
+    parser.add_argument("--equal-time", action="store_true", help="of two allocations, in the time that Cycles takes")
     parser.add_argument("--percentage", type=int, default=50, help="of the scenes' resolution (%(default)s)")
     arguments = parser.parse_args()
     arguments.out.mkdir(parents=True, exist_ok=True)
@@ -188,7 +193,7 @@ def main() -> int:
     try:
         for scene in arguments.scenes:
             reference_samples = arguments.reference_samples or SCENES.get(scene, Scene()).reference_samples
-            effort = Effort(arguments.percentage, arguments.samples, reference_samples)
+            effort = Effort(arguments.percentage, arguments.samples, reference_samples, arguments.equal_time)
             scene_rows, truth_note, cycles_note = demonstrate(scene, arguments.out, effort)
             rows += scene_rows
             verdicts.append(table.verdict(scene_rows))

@@ -7,7 +7,7 @@ declare -A packages=(
   [build]="g++ cmake ninja-build ccache libembree-dev libtbb-dev libopenexr-dev libpng-dev libturbojpeg0-dev libopenimageio-dev
     libdraco-dev libmeshoptimizer-dev libwebp-dev libsimdjson-dev libcli11-dev nlohmann-json3-dev libfmt-dev libgtest-dev libboost-math-dev libeigen3-dev python3"
   [blender]="blender python3-numpy python3-pil python3-openimageio fonts-dejavu-core patchelf"
-  [test]="git clang libclang-rt-dev clang-tidy shellcheck python3-venv gnuplot-nox chromium chromium-driver python3-selenium
+  [test]="git valgrind clang libclang-rt-dev clang-tidy shellcheck python3-venv gnuplot-nox chromium chromium-driver python3-selenium
     xvfb libgl1-mesa-dri"
 )
 

@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -164,6 +165,15 @@ def _color_owner(obj: Any, instance: Any) -> Any:
     return instance.parent if instance.is_instance and instance.parent is not None else obj
 
 
+class Look(NamedTuple):
+    """How an object is seen, whatever it is made of."""
+
+    hidden: frozenset[str]  # kinds of ray that do not see it
+    holdout: bool
+    shadow_catcher: bool
+    shadow_terminator: tuple[float, float]
+
+
 class _Gatherer:
     """One pass over the instances of the depsgraph; what is shared is exported once."""
 
@@ -181,6 +191,7 @@ class _Gatherer:
         self._mesh_index: dict[tuple[int, str, tuple[int, ...]], int | None] = {}
         self._geometry: dict[tuple[int, str, Wanted], Geometry | None] = {}
         self._hidden: dict[int, frozenset[str]] = {}
+        self._looks: dict[tuple[int, int], Look] = {}
         self._instance_attributes = InstanceAttributes()
         self._curves = curve_settings(depsgraph.scene_eval)
 
@@ -262,13 +273,14 @@ class _Gatherer:
                         )
 
     def _matrix(self, instance: Any) -> np.ndarray:
-        matrix = np.array(instance.matrix_world)  # a copy: the instance lives for one step of the iteration
-        if not np.isfinite(matrix).all():
+        # a copy, since the instance lives for one step of the iteration; of the matrix itself numpy takes five times as long
+        values = [x for row in instance.matrix_world for x in row]
+        if not math.isfinite(sum(values)):
             raise ExportError(
                 f"object '{self.context.owner}': its transform is not finite; clear its location, rotation and scale, "
                 "or look at its constraints and drivers"
             )
-        return matrix
+        return np.array(values).reshape(4, 4)
 
     def _hair(self, obj: Any, instance: Any) -> None:
         """Strands of particles: of the object itself, or of its instances by collections and particles."""
@@ -291,21 +303,30 @@ class _Gatherer:
             self._mesh_index[key] = self._add_mesh(instance, kind, source, materials, gather)
         index = self._mesh_index[key]
         if index is not None:
-            hidden = self._hidden_from(obj, instance)
-            if len(hidden) < len(VISIBILITY):
-                data = InstanceData(obj.name, index, self._matrix(instance), hidden)
-                data.holdout = bool(obj.original.is_holdout or obj.original.holdout_get(view_layer=self.view_layer))
-                by_instancer = (
-                    instance.is_instance and instance.parent is not None and instance.parent.is_shadow_catcher
-                )
-                data.shadow_catcher = obj.original.is_shadow_catcher or by_instancer
-                owner, *offsets = compat.shadow_terminator(obj)
-                geometry, shading = (float(getattr(owner, name, 0.0)) for name in offsets)
-                data.shadow_terminator = geometry, shading
+            look = self._look(obj, instance)
+            if len(look.hidden) < len(VISIBILITY):
+                data = InstanceData(obj.name, index, self._matrix(instance), look.hidden)
+                data.holdout, data.shadow_catcher = look.holdout, look.shadow_catcher
+                data.shadow_terminator = look.shadow_terminator
                 self._describe(data, obj, instance, materials)
                 self.instances.append(data)
                 if self.motion is not None:
                     self.motion.add(instance, data)
+
+    def _look(self, obj: Any, instance: Any) -> Look:
+        """The same for all instances of an object by one instancer, of which there may be many."""
+        original, parent = obj.original, instance.parent if instance.is_instance else None
+        key = original.as_pointer(), 0 if parent is None else parent.as_pointer()
+        if key not in self._looks:
+            owner, *offsets = compat.shadow_terminator(obj)
+            geometry, shading = (float(getattr(owner, name, 0.0)) for name in offsets)
+            self._looks[key] = Look(
+                self._hidden_from(obj, instance),
+                bool(original.is_holdout or original.holdout_get(view_layer=self.view_layer)),
+                original.is_shadow_catcher or (parent is not None and parent.is_shadow_catcher),
+                (geometry, shading),
+            )
+        return self._looks[key]
 
     def _describe(self, data: InstanceData, obj: Any, instance: Any, materials: tuple[int, ...]) -> None:
         """What programs read of the object."""
