@@ -103,10 +103,14 @@ uint32_t PixelSurvey::samplesFor(uint32_t samples) {
 
 void PixelSurvey::half(const FilmBuffer& film) {
   half_.resize(film.pixels.size());
+  const double n = film.samples;
   tbb::parallel_for(size_t{0}, half_.size(), [&](size_t i) {
     const Pixel& p = film.pixels[i];
-    for (size_t c = 0; c < 3; ++c)
-      half_[i][c] = static_cast<float>(p.sum[c]), half_[i][3 + c] = static_cast<float>(p.squares[c]);
+    for (size_t c = 0; c < 3; ++c) {
+      const double mean = p.sum[c] / n;
+      half_[i].mean[c] = static_cast<float>(mean);
+      half_[i].deviation[c] = static_cast<float>(std::sqrt(std::max(0.0, p.squares[c] / n - mean * mean)));
+    }
   });
 }
 
@@ -119,10 +123,12 @@ PixelShares PixelSurvey::shares(const FilmBuffer& film, uint32_t samples, double
     const Pixel& p = film.pixels[i];
     for (size_t c = 0; c < 3; ++c) {
       const double m = p.sum[c] / film.samples, relative = 1 / (m * m + kRelMseEpsilon) / 3;
-      const double first[] = {double(half_[i][c]), double(half_[i][3 + c])};
-      const double sums[] = {first[0], p.sum[c] - first[0]}, squares[] = {first[1], p.squares[c] - first[1]};
-      for (size_t h = 0; h < 2; ++h)
-        of[h][i] += static_cast<float>(std::max(0.0, squares[h] - sums[h] * sums[h] / each) / (each - 1) * relative);
+      const double mean = double(half_[i].mean[c]),
+                   variance = double(half_[i].deviation[c]) * double(half_[i].deviation[c]);
+      const double otherMean = p.sum[c] / each - mean,
+                   other = p.squares[c] / each - (variance + mean * mean) - otherMean * otherMean;
+      of[0][i] += static_cast<float>(variance * each / (each - 1) * relative);
+      of[1][i] += static_cast<float>(std::max(0.0, other) * each / (each - 1) * relative);
     }
     all[i] = 0.5f * (of[0][i] + of[1][i]);
   });

@@ -51,7 +51,11 @@ class PixelSurvey {
   static constexpr uint64_t kBytesPerPixel = 13 * sizeof(float) + 3 * sizeof(double);  // at most
 
  private:
-  std::vector<std::array<float, 6>> half_;  // of each pixel: sums, and sums of squares, of three channels
+  // Of a pixel's samples. Not sums of squares, which floats do not hold where light is strong.
+  struct Spread {
+    std::array<float, 3> mean, deviation;
+  };
+  std::vector<Spread> half_;
 };
 
 }  // namespace wardmis

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <numeric>
 #include <random>
@@ -139,6 +140,27 @@ TEST(PixelSurvey, APixelHasNoSayInItsOwnShare) {
   };
   EXPECT_NEAR(changed(own), 1, 1e-3);
   EXPECT_GT(std::abs(changed(own + 1) - 1), 0.1);
+}
+
+// Light as strong as floats hold, and as faint.
+TEST(PixelSurvey, HoldsExtremes) {
+  for (double scale : {1e-30, 1e30}) {
+    FilmBuffer film(8, 8);
+    PixelSurvey survey;
+    film.rays.assign(64, 16);
+    for (; film.samples < 16; ++film.samples) {
+      if (film.samples == 8) survey.half(film);
+      for (size_t i = 0; i < 64; ++i) {
+        const auto v = static_cast<float>(scale * (1 + (i + film.samples) % (i < 32 ? 2 : 7)));
+        film.pixels[i].add({v, 0, -v});
+      }
+    }
+    double gain = 0;
+    const PixelShares s = survey.shares(film, 64, gain);
+    EXPECT_TRUE(std::isfinite(gain));
+    for (float n : s.after) EXPECT_TRUE(n > 0 && n < 16) << n;
+    EXPECT_EQ(s.after.empty(), scale < 1);  // nothing is seen of the faint one
+  }
 }
 
 TEST(PixelSurvey, TakesAQuarterAtMost) {
