@@ -91,8 +91,9 @@ class Bench:
             rays = (long["rays"]["total"] - short["rays"]["total"]) / paths
         found = Measured(" ".join((name, *options)), median(times), min(times), max(times), rays)
         if limit:
-            stats, told = self.render(scene, LONG, *options, probe=True)
-            found.embree = 1e6 * told["seconds"] / stats["camera_paths"]
+            (short, few), (long, many) = (self.render(scene, n, *options, probe=True) for n in (SHORT, LONG))
+            queries = (many["queries"] - few["queries"]) / (long["camera_paths"] - short["camera_paths"])
+            found.embree = 1e6 * queries * many["seconds"] / many["queries"]
         return found
 
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Stands before Embree's two queries (LD_PRELOAD) and tells at the end, in a line of JSON on standard error, how many
-// there were and how many seconds Embree alone takes for them: the first ones are kept, and made once more with nothing
-// between them, on warm caches. For one thread. Run by ./dev bench paths.
+// there were and how many seconds Embree alone takes for them: some are kept, and made once more with nothing between
+// them, on warm caches. For one thread. Run by ./dev bench paths.
 #include <dlfcn.h>
 
 #include <algorithm>
@@ -17,8 +17,11 @@ namespace {
 using wardmis::Ray;
 using wardmis::embree::Query;
 
-constexpr size_t kKept = 200000;  // of half a kilobyte
-constexpr int kRounds = 3;
+// Runs of one after the other, out of many times as many: they are to be those of all of an image, and with what they
+// meet small enough for the caches.
+constexpr unsigned long long kRun = 256, kOutOf = 16 * kRun;
+constexpr size_t kKept = 80 * kRun;
+constexpr int kRounds = 10;
 
 double seconds() {
   timespec t{};
@@ -57,10 +60,10 @@ class Queries {
   // Those that note what they meet on the stack are not made again: the place is gone.
   template <class Call>
   void add(const Kept& k, const Call& call) {
-    ++all_;
+    if (all_++ % kOutOf >= kRun || perQuery_ > 0) return;
     constexpr ptrdiff_t kStack = 8 << 20;
     const ptrdiff_t apart = static_cast<const char*>(k.query.user) - reinterpret_cast<const char*>(&k);
-    if (std::abs(apart) < kStack || perQuery_ > 0) return;
+    if (std::abs(apart) < kStack) return;
     kept_.push_back(k);
     if (kept_.size() < kKept) return;
     double best = 1e30;
