@@ -134,7 +134,7 @@ void Environment::tabulateProgram() {
     const double solidAngle = double(bands_[i / static_cast<size_t>(width_)].height) * 2 * kPi<double> / width_;
     weights[i] = std::max(weights[i], kLeast * all * solidAngle / (4 * kPi<double>));
   }
-  table_ = AliasTable(weights);
+  table_ = PiecewiseConstant2D(weights, width_);
   integral_ = static_cast<float>(table_.sum());
 }
 
@@ -184,7 +184,7 @@ void Environment::tabulateImage() {
     fill(onBall);
   else
     fill([](float u, float v) { return Vec2f{u, v}; });
-  table_ = AliasTable(weights);
+  table_ = PiecewiseConstant2D(weights, width_);
   integral_ = static_cast<float>(table_.sum());
   exists_ = !table_.empty();
   const Texture& texture = scene.textures[static_cast<size_t>(world.texture)];
@@ -310,10 +310,10 @@ Environment::Place Environment::sample(ChoicePoint u) const {
     const Vec3f d = Framef::around(axis_).toWorld(toCone(Vec2f{toCoordinate(u.x), u.y}, oneMinusCos_));
     return {this, d, 0, 0, 1 / (2 * kPi<float> * oneMinusCos_), {0, 0}};
   }
-  const uint32_t cell = table_.sample(u.x);
+  const uint32_t cell = table_.sample(u);
   const uint32_t y = cell / static_cast<uint32_t>(width_), x = cell - y * static_cast<uint32_t>(width_);
-  const float across = toCoordinate(u.x);
-  const Vec3f image = inCell(x, y, across, u.y), world = fromImage(image);
+  const float across = u.y;
+  const Vec3f image = inCell(x, y, across, toCoordinate(u.x)), world = fromImage(image);
   const float l = length(world);  // 1 / that of toImage() of the unit vector
   Place p{this, world / l, 0, 0, bands_[y].density * determinant_ * l * l * l, {0, 0}};
   const Vec2f uv = world_.map == SkyMap::kMirrorBall

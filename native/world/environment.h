@@ -5,7 +5,7 @@
 #include "math/random.h"
 #include "math/vec.h"
 #include "scene/scene.h"
-#include "world/alias.h"
+#include "world/piecewise2d.h"
 #include "world/shading.h"
 
 namespace wardmis {
@@ -37,7 +37,7 @@ class Environment {
   // Draws a direction; prefetch(u) asks for what that reads.
   Place sample(ChoicePoint u) const;
   void prefetch(ChoicePoint u) const {
-    if (tabulated()) table_.prefetch(u.x);
+    if (tabulated()) table_.prefetch(u);
   }
   Place find(Vec3f direction) const;
   // The radiance that comes from there, and the density of sample(), per solid angle; 0 where !sampled().
@@ -86,7 +86,7 @@ class Environment {
   // meridians are straight and its parallels circles about the middle.
   float matrix_[9] = {}, inverse_[9] = {}, determinant_ = 1;  // the determinant without its sign
   int width_ = 0, height_ = 0;                                // of the table, row 0 at the bottom (-z)
-  AliasTable table_;
+  PiecewiseConstant2D table_;
   // Of an image with a cell of the table for each texel, its colours beside the cells' probabilities, so that a look
   // at both reads two places of memory and not three; with a border of one texel as the texture goes on there. Empty of
   // other images.
