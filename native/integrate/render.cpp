@@ -79,7 +79,8 @@ class Ticker {
   std::thread thread_;
 };
 
-// One render in progress: passes over the whole image, each adding the same number of camera samples to every pixel.
+// One render in progress: passes over the whole image, each adding as many camera samples to every pixel, or to each
+// what is its share of as many.
 template <size_t K>
 class Run {
  public:
@@ -91,8 +92,8 @@ class Run {
   Stop stop() const { return observer_.stop != nullptr ? observer_.stop->load(std::memory_order_relaxed) : Stop::kNo; }
   bool stopped() const { return stop() != Stop::kNo; }
 
-  // Adds `samples` to the image; `last`: of the parts of a sample, which makes it a whole one. A stop that keeps the
-  // image lets the pass end; one that discards it does not: false.
+  // Adds `samples` to the image, which may be a part of one. A stop that keeps the image lets the pass end; one that
+  // discards it does not: false.
   bool pass(double samples, Pilot<K>* pilot) {
     std::atomic<int> done{0};
     const double total = tilesOf(*film_);
@@ -171,8 +172,8 @@ class Run {
         timeIsUp_ = true;
         return;
       }
-      // passes of about half a second: long enough to cost nothing, short enough to watch
-      double next = std::min({2.0 * chunk, std::max(1.0, 0.5 / std::max(perSample, 1e-9)), 4096.0});
+      // long enough to cost nothing, short enough to watch
+      double next = std::min({2.0 * chunk, std::max(1.0, kWatched / std::max(perSample, 1e-9)), 4096.0});
       if (limit > 0) next = std::min(next, std::max(1.0, (limit - after) / perSample));
       chunk = static_cast<uint32_t>(next);
     }

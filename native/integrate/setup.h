@@ -72,8 +72,8 @@ struct RenderSetup {
 };
 
 // Adds the `samples` camera samples that follow those of the film, in mean over its pixels, in tiles, by all threads;
-// film.samples and .partial are the caller's to raise. counts: gives the calling thread's; tilesDone is raised by each tile that is
-// ready; as soon as `discard` (may be empty) says true, the rest is left.
+// film.samples and .partial are the caller's to raise. counts: gives the calling thread's; tilesDone is raised by each
+// tile that is ready; as soon as `discard` (may be empty) says true, the rest is left.
 template <size_t K>
 void renderTiles(const RenderSetup<K>& setup, FilmBuffer& film, double samples, Pilot<K>* pilot,
                  const std::function<Counts&()>& counts, std::atomic<int>& tilesDone,

@@ -14,7 +14,7 @@ from pathlib import Path
 import exr
 import numpy as np
 import OpenImageIO as oiio
-from command import BINARY, CommandTest, combined, same
+from command import BINARY, CommandTest, close, combined, same
 
 PASSES = {
     "Combined": "RGBA",
@@ -362,13 +362,6 @@ class Image(CommandTest):
         self.assertIn("gives light", self.run_command("render", scene, "-o", self.out, "--spp", "1").stderr)
 
 
-def close_pipes(process):
-    process.kill()
-    process.wait()
-    for stream in (process.stdout, process.stderr):
-        stream.close()
-
-
 class Progress(CommandTest):
     def test_json_lines(self):
         done = self.render(
@@ -404,8 +397,9 @@ class Progress(CommandTest):
         command = [BINARY, "render", self.scene(), "-o", self.out, "--resolution", "1200x800", "--threads", "1"]
         command += ["--spp", "1", "--samples-per-hit", "6", "--progress", "json", "--preview", preview]
         command += ["--preview-interval", "0"]
-        process = subprocess.Popen([*map(str, command)], text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-        self.addCleanup(close_pipes, process)
+        pipes = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
+        process = subprocess.Popen([*map(str, command)], text=True, **pipes)
+        self.addCleanup(close, process)
         means, dark, seconds, began = [], [], [], None
         for line in process.stdout:
             event = json.loads(line)
