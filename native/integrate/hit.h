@@ -197,6 +197,7 @@ Rgb estimateHit(const RenderScene& world, const Sampler& sampler, const Interact
     return normalize(
         x.frame.toWorld(Vec3f{static_cast<float>(wi.x), static_cast<float>(wi.y), static_cast<float>(wi.z)}));
   };
+  for (int m = 0; m < n[kLight]; ++m) world.emitters.aim(lights[m]);
   // where surface samples look at a sky, for which they then wait no more
   const bool skyAhead = world.emitters.skyAhead();
   Scratch<Environment::Place, kMaxSamplesPerHit> skies;

@@ -378,6 +378,11 @@ LightChoice Emitters::choose(const LightView& view, ChoicePoint u) const {
   return c;
 }
 
+void Emitters::aim(LightChoice& c) const {
+  if (c.emitter < lamps_.size() && lamps_[c.emitter].kind == Kind::kEnvironment)
+    c.cell = environments_[lamps_[c.emitter].environment].cell(c.point);
+}
+
 void Emitters::look(LightSample& s, Vec3f from, int bounces) const {
   if (s.sky.sky == nullptr) return;
   const Environment::Look look = s.sky.sky->look(s.sky, {from, false, bounces});
@@ -498,7 +503,7 @@ LightSample Emitters::sample(Vec3f from, const LightChoice& choice, int bounces,
     case Kind::kEnvironment: {
       const Environment& environment = environments_[lamp.environment];
       s.distance = kFar;
-      s.sky = environment.sample(choice.point);
+      s.sky = environment.sample(choice.cell, choice.point);
       s.direction = s.sky.direction;
       s.pdf = 1;
       break;

@@ -36,6 +36,7 @@ struct LightChoice {
   uint32_t emitter = 0;
   float probability = 0;
   ChoicePoint point{};
+  uint32_t cell = 0;  // of a sky's table
 };
 
 // What a ray meets: one emitter.
@@ -64,11 +65,12 @@ class Emitters {
   bool anyStrands() const { return strands_; }
   uint64_t emissiveTriangles() const { return triangles_; }
 
-  // A sample is made in three steps, each of which asks for the memory that the next one reads: work between them hides
+  // A sample is made in four steps, each of which asks for the memory that the next one reads: work between them hides
   // the wait. bounces: by which the path has come to `from`; time: of the path. A choice of probability 0 is none.
   // matte: as LightTree has it.
   LightView view(Vec3f from, Vec3f facing, float matte) const { return tree_.from(from, facing, matte); }
   LightChoice choose(const LightView& view, ChoicePoint u) const;
+  void aim(LightChoice& choice) const;
   LightSample sample(Vec3f from, const LightChoice& choice, int bounces = 0, float time = kMiddle) const;
   void look(LightSample& sample, Vec3f from, int bounces = 0) const;
   // Whether there is a sky that is looked up in memory, and where a ray of this direction meets it, if it does: for

@@ -3,6 +3,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -38,6 +40,40 @@ constexpr float drawnAs(Rgb c) {
 }
 
 constexpr int kMaxTableWidth = 2048, kMaxTableHeight = 1024;
+// Of an image whose texels are the nodes.
+constexpr int kMaxImageWidth = 8192, kMaxImageHeight = 4096;
+
+// From -z, for u and v of [0, 1].
+struct Polar {
+  Vec3f direction;
+  float sinTheta;
+};
+Polar directionAt(Vec2f uv) {
+  float s, c, r, z;
+  sincos2Pi(uv.x, s, c);
+  sincos2Pi(0.5f * uv.y, r, z);
+  return {{-r * c, r * s, -z}, r};
+}
+
+// Of what is even over u and v, per solid angle; at the poles, where it has none, it is that very near to them.
+float overSphere(float sinTheta) { return 1 / (2 * kPi<float> * kPi<float> * std::max(sinTheta, 1e-6f)); }
+
+// Where the linear density from a to b over [0, 1] has the share u below.
+float toLinear(float u, float a, float b) {
+  const float root = std::sqrt(a * a + (b * b - a * a) * u);
+  return a + root > 0 ? std::min(u * (a + b) / (a + root), 1.0f) : u;
+}
+
+constexpr float between(float a, float b, float t) { return a * (1 - t) + b * t; }
+
+// The part of the way from the nodes below to those above that is a row of cells.
+struct RowSpan {
+  float from = 0, to = 1;
+  RowSpan(int y, int height) {
+    if (y == 0) from = 0.5f;
+    if (y == height) to = 0.5f;
+  }
+};
 
 }  // namespace
 
@@ -83,20 +119,77 @@ void Environment::measureCone() {
   integral_ = static_cast<float>(sum / (kPoints * kPoints) * 2 * kPi<double> * double(oneMinusCos_));
 }
 
-void Environment::makeBands() {
-  for (int y = 0; y < height_; ++y) {
-    const bool up = 2 * y >= height_;
-    const double step = kPi<double> / height_, from = step * (up ? height_ - 1 - y : y);
-    const auto fromPole = [](double angle) { return 2 * std::pow(std::sin(angle / 2), 2); };
-    const double height = 2 * std::sin(from + step / 2) * std::sin(step / 2);
-    bands_.push_back({static_cast<float>(fromPole(from)), static_cast<float>(height), up,
-                      static_cast<float>(width_ / (2 * kPi<double> * height))});
+// The weights of the four nodes around a cell: below and above, left and right.
+struct Environment::Cell {
+  std::array<float, 2> below, above;
+
+  std::array<float, 2> row(float t) const { return {between(below[0], above[0], t), between(below[1], above[1], t)}; }
+  float across(float t) const { return row(t)[0] + row(t)[1]; }
+  float at(Vec2f share) const {
+    const std::array<float, 2> r = row(share.y);
+    return between(r[0], r[1], share.x);
   }
+  float mean(RowSpan span) const { return 0.25f * (across(span.from) + across(span.to)); }
+};
+
+Environment::Cell Environment::cellAt(uint32_t node) const {
+  const uint32_t above = node + static_cast<uint32_t>(width_ + 2);
+  if (!nodes_.empty()) return {{nodes_[node], nodes_[node + 1]}, {nodes_[above], nodes_[above + 1]}};
+  const auto weight = [&](uint32_t i) {
+    const Texel& t = texels_[i];
+    return drawnAs(Rgb{t.r, t.g, t.b} * world_.radiance);
+  };
+  return {{weight(node), weight(node + 1)}, {weight(above), weight(above + 1)}};
 }
 
-// The table's cells hold what the program makes of a grid of directions, four to a cell, its borders among them. What
-// shines between them alone is left to the surface's techniques; every cell has a chance, so that they are not the only
-// ones that find it.
+// Density over [0, 1]^2, of the cell, over the mean of its weights.
+float Environment::densityOverMean(uint32_t node, const Cell& cell) const {
+  const uint32_t y = node / static_cast<uint32_t>(width_ + 2), x = node - y * static_cast<uint32_t>(width_ + 2) - 1;
+  const RowSpan span(static_cast<int>(y), height_);
+  const float area = (span.to - span.from) / (static_cast<float>(width_) * static_cast<float>(height_)),
+              mean = cell.mean(span) * area;
+  return mean > 0 ? std::min(table_.probability(y * static_cast<uint32_t>(width_) + x) / mean, 1e37f) : 0;
+}
+
+// weight(x, y): at each node, and in the rows before the first and after the last one. Of texels, from them.
+template <class Weight>
+void Environment::tabulate(const Weight& weight) {
+  if (texels_.empty()) {
+    nodes_.resize(static_cast<size_t>(width_ + 2) * static_cast<size_t>(height_ + 2));
+    tbb::parallel_for(-1, height_ + 1, [&](int y) {
+      for (int x = -1; x <= width_; ++x) nodes_[nodeAt(x, y)] = weight((x + width_) % width_, y);
+    });
+  }
+  // a matrix that only turns takes a solid angle to one as large
+  bool turns = true;
+  for (const Vec3f d : {Vec3f{1, 0, 0}, Vec3f{0, 1, 0}, Vec3f{0, 0, 1}, Vec3f{0.6f, 0.8f, 0}, Vec3f{0, 0.6f, 0.8f},
+                        Vec3f{0.8f, 0, 0.6f}})
+    turns = turns && std::abs(length(toImage(d)) - 1) < 1e-5f;
+  table_ = PiecewiseConstant2D(static_cast<size_t>(height_) + 1, width_, [&](size_t row, double* weights) {
+    const int y = static_cast<int>(row);
+    const RowSpan span(y, height_);
+    const double from = (y - 0.5 + double(span.from)) / height_, to = (y - 0.5 + double(span.to)) / height_;
+    const double middle = (from + to) / 2;
+    const double band = 2 * std::sin(kPi<double> * middle) * std::sin(kPi<double> * (to - from) / 2);
+    for (int x = 0; x < width_; ++x) {
+      const Vec2f at{static_cast<float>((x + 1.0) / width_), static_cast<float>(middle)};
+      const float stretched = turns ? 1 : stretch(toImage(normalize(fromImage(directionAt(at).direction))));
+      weights[x] = double(cellAt(nodeAt(x, y - 1)).mean(span)) * band * 2 * kPi<double> / width_ / double(stretched);
+    }
+  });
+  integral_ = static_cast<float>(table_.sum());
+}
+
+void Environment::tabulate(const std::vector<float>& weights) {
+  tabulate([&](int x, int y) {
+    return weights[static_cast<size_t>(std::clamp(y, 0, height_ - 1)) * static_cast<size_t>(width_) +
+                   static_cast<size_t>(x)];
+  });
+}
+
+// What the program makes of a grid of directions: of the middle of each node's part, and eight around it on the
+// borders, of which the mean has a fourth of a say, since what shines between the grid's points alone is left to the
+// surface's techniques; every part has a chance, so that they are not the only ones that find it.
 void Environment::tabulateProgram() {
   width_ = 512, height_ = 256;
   for (const uint32_t t : world_.program->textures) {
@@ -104,7 +197,6 @@ void Environment::tabulateProgram() {
     width_ = std::clamp(image.width, width_, kMaxTableWidth),
     height_ = std::clamp(image.height, height_, kMaxTableHeight);
   }
-  makeBands();
   const size_t columns = 2 * static_cast<size_t>(width_), rows = 2 * static_cast<size_t>(height_) + 1;
   std::vector<float> grid(columns * rows);
   tbb::parallel_for(size_t{0}, rows, [&](size_t j) {
@@ -118,79 +210,86 @@ void Environment::tabulateProgram() {
       grid[j * columns + i] = std::isfinite(value) ? value : 0;
     }
   });
-  std::vector<double> weights(static_cast<size_t>(width_) * static_cast<size_t>(height_));
-  double all = 0;
-  for (size_t y = 0; y < static_cast<size_t>(height_); ++y)
+  std::vector<float> weights(static_cast<size_t>(width_) * static_cast<size_t>(height_));
+  double all = 0, area = 0;
+  for (size_t y = 0; y < static_cast<size_t>(height_); ++y) {
+    const double part = std::sin(kPi<double> * (double(y) + 0.5) / height_);
     for (size_t x = 0; x < static_cast<size_t>(width_); ++x) {
-      double sum = 0;
+      float sum = 0;
       for (size_t j = 0; j < 3; ++j)
-        for (size_t i = 0; i < 3; ++i) sum += double(grid[(2 * y + j) * columns + (2 * x + i) % columns]);
-      double& weight = weights[y * static_cast<size_t>(width_) + x];
-      weight = sum / 9 * double(bands_[y].height) * 2 * kPi<double> / width_;
-      all += weight;
+        for (size_t i = 0; i < 3; ++i) sum += grid[(2 * y + j) * columns + (2 * x + i) % columns];
+      float& weight = weights[y * static_cast<size_t>(width_) + x];
+      weight = std::max(grid[(2 * y + 1) * columns + 2 * x + 1], sum / 9 / 4);
+      all += double(weight) * part, area += part;
     }
-  constexpr double kLeast = 0.01;  // of the mean
-  for (size_t i = 0; i < weights.size(); ++i) {
-    const double solidAngle = double(bands_[i / static_cast<size_t>(width_)].height) * 2 * kPi<double> / width_;
-    weights[i] = std::max(weights[i], kLeast * all * solidAngle / (4 * kPi<double>));
   }
-  table_ = PiecewiseConstant2D(weights, width_);
-  integral_ = static_cast<float>(table_.sum());
+  constexpr double kLeast = 0.01;  // of the mean
+  const auto least = static_cast<float>(kLeast * all / area);
+  for (float& weight : weights) weight = std::max(weight, least);
+  tabulate(weights);
 }
 
 void Environment::tabulateImage() {
   const World& world = world_;
   const Scene& scene = scene_;
-  // The table's cells hold the image's radiance, taken over each cell from a grid of looked-up values, so that the
-  // density is positive wherever the interpolated image is.
-  const Image& image = scene.images[static_cast<size_t>(scene.textures[static_cast<size_t>(world.texture)].image)];
+  const Texture& texture = scene.textures[static_cast<size_t>(world.texture)];
+  const Image& image = scene.images[static_cast<size_t>(texture.image)];
   image_ = &image;
   const bool ball = world.map == SkyMap::kMirrorBall;
-  // of a ball: the rim, and a meridian at the middle, where it is the finest
-  const int side = std::max(image.width, image.height);
-  const int columns = ball ? static_cast<int>(std::ceil(kPi<double> * side)) : image.width;
-  const int rows = ball ? static_cast<int>(std::ceil(kPi<double> / 4 * side)) : image.height;
-  width_ = std::min(columns, kMaxTableWidth), height_ = std::min(rows, kMaxTableHeight);
-  const int subX = (columns + width_ - 1) / width_ * 2, subY = (rows + height_ - 1) / height_ * 2;
-  const auto onBall = [](float u, float v) {
-    const float phi = kPi<float> * (1 - 2 * u), radius = 0.5f * std::sin(0.5f * kPi<float> * v);
-    return Vec2f{0.5f + radius * std::sin(phi), 0.5f + radius * std::cos(phi)};
-  };
-  makeBands();
-  std::vector<double> weights(static_cast<size_t>(width_) * static_cast<size_t>(height_));
-  TextureUse use;
-  use.texture = world.texture;
-  const auto fill = [&](auto uvOf) {
-    tbb::parallel_for(0, height_, [&](int y) {
-      const double band = double(bands_[static_cast<size_t>(y)].height);
+  if (!ball && texture.filter == Filter::kLinear && image.width <= kMaxImageWidth && image.height <= kMaxImageHeight) {
+    width_ = image.width, height_ = image.height;
+    if (texture.wrapU == Wrap::kRepeat && !image.filterEncoded && width_ <= kMaxTableWidth &&
+        height_ <= kMaxTableHeight &&
+        std::none_of(image.floats.begin(), image.floats.end(), [](float v) { return v < 0; }))
+      makeTexels();
+    tabulate([&](int x, int y) {
+      const int row = wrappedTexel(y, height_, texture.wrapV);
+      if (row < 0) return 0.0f;
+      return drawnAs(texelRgb(image, static_cast<size_t>(row) * static_cast<size_t>(width_) + static_cast<size_t>(x)) *
+                     world.radiance);
+    });
+    tbb::parallel_for(-1, texels_.empty() ? -1 : height_, [&](int y) {
       for (int x = 0; x < width_; ++x) {
-        double sum = 0;
-        for (int j = 0; j <= subY; ++j)
-          for (int i = 0; i <= subX; ++i) {
-            const float u = (static_cast<float>(x) + (static_cast<float>(i)) / static_cast<float>(subX)) /
-                            static_cast<float>(width_);
-            const float v = (static_cast<float>(y) + (static_cast<float>(j)) / static_cast<float>(subY)) /
-                            static_cast<float>(height_);
-            sum += drawnAs(sampleRgb(scene, use, uvOf(u, v)) * world.radiance);
-          }
-        const Vec3f middle = inCell(static_cast<uint32_t>(x), static_cast<uint32_t>(y), 0.5f, 0.5f);
-        const float stretched = stretch(toImage(normalize(fromImage(middle))));
-        weights[static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x)] =
-            sum / double((subX + 1) * (subY + 1)) * band * 2 * kPi<double> / width_ / double(stretched);
+        const uint32_t node = nodeAt(x, y);
+        texels_[node].scale = densityOverMean(node, cellAt(node));
       }
     });
-  };
-  if (ball)
-    fill(onBall);
-  else
-    fill([](float u, float v) { return Vec2f{u, v}; });
-  table_ = PiecewiseConstant2D(weights, width_);
-  integral_ = static_cast<float>(table_.sum());
+  } else {
+    tabulateMeans();
+  }
   exists_ = !table_.empty();
-  const Texture& texture = scene.textures[static_cast<size_t>(world.texture)];
-  if (exists_ && !ball && image.width == width_ && image.height == height_ && texture.filter == Filter::kLinear &&
-      !image.filterEncoded)
-    makeTexels();
+}
+
+// The weights are means over the nodes' parts, from a grid of looked-up values, so that the density is positive
+// wherever the filtered image is.
+void Environment::tabulateMeans() {
+  const bool ball = world_.map == SkyMap::kMirrorBall;
+  // of a ball: the rim, and a meridian at the middle, where it is the finest
+  const int side = std::max(image_->width, image_->height);
+  const int columns = ball ? static_cast<int>(std::ceil(kPi<double> * side)) : image_->width;
+  const int rows = ball ? static_cast<int>(std::ceil(kPi<double> / 4 * side)) : image_->height;
+  width_ = std::min(columns, kMaxTableWidth), height_ = std::min(rows, kMaxTableHeight);
+  const int subX = (columns + width_ - 1) / width_ * 2, subY = (rows + height_ - 1) / height_ * 2;
+  const auto onBall = [](Vec2f uv) {
+    const float phi = kPi<float> * (1 - 2 * uv.x), radius = 0.5f * std::sin(0.5f * kPi<float> * uv.y);
+    return Vec2f{0.5f + radius * std::sin(phi), 0.5f + radius * std::cos(phi)};
+  };
+  std::vector<float> weights(static_cast<size_t>(width_) * static_cast<size_t>(height_));
+  tbb::parallel_for(0, height_, [&](int y) {
+    for (int x = 0; x < width_; ++x) {
+      double sum = 0;
+      for (int j = 0; j <= subY; ++j)
+        for (int i = 0; i <= subX; ++i) {
+          const Vec2f uv{
+              (static_cast<float>(x) + static_cast<float>(i) / static_cast<float>(subX)) / static_cast<float>(width_),
+              (static_cast<float>(y) + static_cast<float>(j) / static_cast<float>(subY)) / static_cast<float>(height_)};
+          sum += double(drawnAs(imageAt(ball ? onBall(uv) : uv)));
+        }
+      weights[static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x)] =
+          static_cast<float>(sum / double((subX + 1) * (subY + 1)));
+    }
+  });
+  tabulate(weights);
 }
 
 void Environment::makeTexels() {
@@ -200,9 +299,9 @@ void Environment::makeTexels() {
     for (int x = -1; x <= width_; ++x) {
       const int column = wrappedTexel(x, width_, texture.wrapU), row = wrappedTexel(y, height_, texture.wrapV);
       if (column < 0 || row < 0) continue;
-      const size_t from = static_cast<size_t>(row) * static_cast<size_t>(width_) + static_cast<size_t>(column);
-      const Rgb c = texelRgb(*image_, from);
-      texels_[texelAt(x, y)] = {c.x, c.y, c.z, table_.probability(static_cast<uint32_t>(from))};
+      const Rgb c =
+          texelRgb(*image_, static_cast<size_t>(row) * static_cast<size_t>(width_) + static_cast<size_t>(column));
+      texels_[nodeAt(x, y)] = {c.x, c.y, c.z, 0};
     }
   });
 }
@@ -229,34 +328,32 @@ Rgb Environment::radiance(Vec3f direction, const SkyRay& ray) const {
   return imageAt(world_.map == SkyMap::kMirrorBall ? mirrorBall(image) : equirectangular(image));
 }
 
-// uv in [0, 1]^2, in the cell (x, y) of the table.
-void Environment::putInImage(Place& p, Vec2f uv, int x, int y) const {
-  p.uv = uv;
-  p.cell = static_cast<uint32_t>(y * width_ + x);
-  if (texels_.empty()) return;
-  const auto fall = [](float u, int n, float& share) {  // as texelFall()
+// uv in [0, 1]^2, of the table.
+void Environment::putInTable(Place& p, Vec2f uv) const {
+  const auto fall = [](float u, int n, int most, float& share) {  // as texelFall()
     const float at = u * static_cast<float>(n) - 0.5f;
-    const int i = static_cast<int>(at) - (at < 0 ? 1 : 0);
+    const int i = std::min(static_cast<int>(at) - (at < 0 ? 1 : 0), most);
     share = at - static_cast<float>(i);
-    return std::clamp(i, -1, n - 1);
+    return i;
   };
-  p.cell = texelAt(x, y);
-  const int i = fall(uv.x, width_, p.uv.x), j = fall(uv.y, height_, p.uv.y);
-  p.texel = texelAt(i, j);
+  const int x = fall(uv.x, width_, width_ - 1, p.share.x), y = fall(uv.y, height_, height_ - 1, p.share.y);
+  p.node = nodeAt(x < 0 ? width_ - 1 : x, y);
 }
 
 // The bilinear filter, all of a texel's numbers at once.
-Rgb Environment::filtered(uint32_t texel, Vec2f share) const {
+Environment::Look Environment::filtered(const Place& p) const {
   using Lanes = float __attribute__((vector_size(16)));
   const auto at = [&](uint32_t i) {
     Lanes l;
     std::memcpy(&l, &texels_[i], sizeof l);
     return l;
   };
-  const uint32_t above = texel + static_cast<uint32_t>(width_ + 2);
-  const Lanes c = (at(texel) * (1 - share.x) + at(texel + 1) * share.x) * (1 - share.y) +
-                  (at(above) * (1 - share.x) + at(above + 1) * share.x) * share.y;
-  return world_.radiance * Rgb{c[0], c[1], c[2]};
+  const Vec2f share = p.share;
+  const uint32_t above = p.node + static_cast<uint32_t>(width_ + 2);
+  const Lanes first = at(p.node), c = (first * (1 - share.x) + at(p.node + 1) * share.x) * (1 - share.y) +
+                                      (at(above) * (1 - share.x) + at(above + 1) * share.x) * share.y;
+  const Rgb radiance = world_.radiance * Rgb{c[0], c[1], c[2]};
+  return {radiance, drawnAs(radiance) * first[3] * p.density};
 }
 
 Rgb Environment::imageAt(Vec2f uv) const {
@@ -266,61 +363,77 @@ Rgb Environment::imageAt(Vec2f uv) const {
 }
 
 Environment::Place Environment::find(Vec3f direction) const {
-  Place p{this, direction, 0, 0, 0, {0, 0}};
+  Place p{this, direction};
   if (oneMinusCos_ > 0) p.density = inCone(direction) ? 1 / (2 * kPi<float> * oneMinusCos_) : 0;
   if (!tabulated()) return p;
   const Vec3f image = toImage(direction);
+  const float l2 = dot(image, image), l = std::sqrt(l2);
   const Vec2f uv = equirectangular(image);
-  const int x = std::clamp(static_cast<int>(uv.x * static_cast<float>(width_)), 0, width_ - 1);
-  const int y = std::clamp(static_cast<int>(uv.y * static_cast<float>(height_)), 0, height_ - 1);
-  p.density = bands_[static_cast<size_t>(y)].density * stretch(image);
-  putInImage(p, world_.map == SkyMap::kMirrorBall ? mirrorBall(image) : uv, x, y);
+  p.uv = world_.map == SkyMap::kMirrorBall ? mirrorBall(image) : uv;
+  p.density = overSphere(std::sqrt(image.x * image.x + image.y * image.y) / l) * determinant_ / (l2 * l);
+  putInTable(p, uv);
   prefetch(p);
   return p;
 }
 
-void Environment::prefetch(const Place& place) const {
-  if (!texels_.empty()) {
-    const Texel* const first = &texels_[place.texel];
-    for (const Texel* texel : {first, first + width_ + 2}) fetch(texel), fetch(texel + 1);
-    return;
-  }
-  table_.prefetchProbability(place.cell);
-  if (image_ != nullptr) wardmis::prefetch(*image_, place.uv);
+void Environment::prefetchNodes(uint32_t node) const {
+  const auto ask = [&](const auto& nodes) {
+    for (const auto* first : {&nodes[node], &nodes[node] + width_ + 2}) fetch(first), fetch(first + 1);
+  };
+  if (!texels_.empty())
+    ask(texels_);
+  else
+    ask(nodes_);
+}
+
+void Environment::prefetch(const Place& p) const {
+  prefetchNodes(p.node);
+  if (!texels_.empty()) return;
+  const uint32_t y = p.node / static_cast<uint32_t>(width_ + 2);
+  table_.prefetchProbability(p.node - 2 * y - 1);
+  if (image_ != nullptr) wardmis::prefetch(*image_, p.uv);
 }
 
 Environment::Look Environment::look(const Place& p, const SkyRay& ray) const {
-  if (!texels_.empty()) return {filtered(p.texel, p.uv), texels_[p.cell].probability * p.density};
+  if (!texels_.empty()) return filtered(p);
   if (!tabulated()) return {radiance(p.direction, ray), p.density};
-  return {world_.program ? radiance(p.direction, ray) : imageAt(p.uv), table_.probability(p.cell) * p.density};
+  const Cell cell = cellAt(p.node);
+  return {world_.program ? radiance(p.direction, ray) : imageAt(p.uv),
+          densityOverMean(p.node, cell) * cell.at(p.share) * p.density};
 }
 
-// Of the image's frame, uniform in the cell's solid angle: in azimuth and in cos of the polar angle.
-Vec3f Environment::inCell(uint32_t x, uint32_t y, float u, float v) const {
-  const Band& band = bands_[y];
-  const float t = band.begin + v * band.height;  // 1 - cos of the angle to the pole
-  const float r = std::sqrt(std::max(0.0f, t * (2 - t)));
-  float sine, cosine;  // of the azimuth, which is pi less this
-  sincos2Pi((static_cast<float>(x) + u) / static_cast<float>(width_), sine, cosine);
-  return {-r * cosine, r * sine, band.up ? 1 - t : t - 1};
+uint32_t Environment::cell(ChoicePoint& u) const {
+  if (!tabulated()) return 0;
+  const uint32_t cell = table_.sample(u), y = cell / static_cast<uint32_t>(width_);
+  prefetchNodes(cell + 2 * y + 1);
+  return cell;
 }
 
-Environment::Place Environment::sample(ChoicePoint u) const {
+Environment::Place Environment::sample(uint32_t cell, ChoicePoint u) const {
   if (oneMinusCos_ > 0) {
-    const Vec3f d = Framef::around(axis_).toWorld(toCone(Vec2f{toCoordinate(u.x), u.y}, oneMinusCos_));
-    return {this, d, 0, 0, 1 / (2 * kPi<float> * oneMinusCos_), {0, 0}};
+    Place p{this, Framef::around(axis_).toWorld(toCone(Vec2f{toCoordinate(u.x), u.y}, oneMinusCos_))};
+    p.density = 1 / (2 * kPi<float> * oneMinusCos_);
+    return p;
   }
-  const uint32_t cell = table_.sample(u);
-  const uint32_t y = cell / static_cast<uint32_t>(width_), x = cell - y * static_cast<uint32_t>(width_);
-  const float across = u.y;
-  const Vec3f image = inCell(x, y, across, toCoordinate(u.x)), world = fromImage(image);
+  const auto y = static_cast<int>(cell / static_cast<uint32_t>(width_)), x = static_cast<int>(cell) - y * width_;
+  Place p{this};
+  p.node = nodeAt(x, y - 1);
+  const Cell weights = cellAt(p.node);
+  const RowSpan span(y, height_);
+  p.share.y =
+      between(span.from, span.to, toLinear(toCoordinate(u.x), weights.across(span.from), weights.across(span.to)));
+  const std::array<float, 2> row = weights.row(p.share.y);
+  p.share.x = toLinear(u.y, row[0], row[1]);
+  const float across = (static_cast<float>(x) + 0.5f + p.share.x) / static_cast<float>(width_);
+  const Vec2f uv{across < 1 ? across : across - 1,
+                 (static_cast<float>(y) - 0.5f + p.share.y) / static_cast<float>(height_)};
+  const auto [image, sinTheta] = directionAt(uv);
+  const Vec3f world = fromImage(image);
+  p.uv = world_.map == SkyMap::kMirrorBall ? mirrorBall(image) : uv;
   const float l = length(world);  // 1 / that of toImage() of the unit vector
-  Place p{this, world / l, 0, 0, bands_[y].density * determinant_ * l * l * l, {0, 0}};
-  const Vec2f uv = world_.map == SkyMap::kMirrorBall
-                       ? mirrorBall(image)
-                       : Vec2f{(static_cast<float>(x) + across) / static_cast<float>(width_), heightOf(image)};
-  putInImage(p, uv, static_cast<int>(x), static_cast<int>(y));
-  prefetch(p);
+  p.direction = world / l;
+  p.density = overSphere(sinTheta) * determinant_ * l * l * l;
+  if (image_ != nullptr && texels_.empty()) wardmis::prefetch(*image_, p.uv);  // all else has just been read
   return p;
 }
 

@@ -29,15 +29,21 @@ class Environment {
   struct Place {
     const Environment* sky = nullptr;  // whose place it is; null: nobody's
     Vec3f direction{0, 0, 1};          // unit
-    uint32_t cell = 0;
-    uint32_t texel = 0;  // of texels_: the lower left one of the four around the place
-    float density = 0;   // of directions in the cell, per solid angle
-    Vec2f uv{0, 0};      // in the sky's image; where there are texels_, its share of the next texel across and up
+    uint32_t node = 0;                 // the lower left one of the four around the place
+    Vec2f share{0, 0};                 // of the next node across and up
+    Vec2f uv{0, 0};                    // in the sky's image
+    float density = 0;                 // per solid angle: of what is even over the table, or in a cone
   };
-  // Draws a direction; prefetch(u) asks for what that reads.
-  Place sample(ChoicePoint u) const;
+  // A direction is drawn in three steps: prefetch(u) asks for what cell(u) reads, which draws a cell of the table and
+  // leaves in u what is left of it; that asks for what sample() reads.
   void prefetch(ChoicePoint u) const {
     if (tabulated()) table_.prefetch(u);
+  }
+  uint32_t cell(ChoicePoint& u) const;
+  Place sample(uint32_t cell, ChoicePoint u) const;
+  Place sample(ChoicePoint u) const {  // without a wait between
+    const uint32_t c = cell(u);
+    return sample(c, u);
   }
   Place find(Vec3f direction) const;
   // The radiance that comes from there, and the density of sample(), per solid angle; 0 where !sampled().
@@ -51,9 +57,9 @@ class Environment {
 
  private:
   void tabulateImage();
+  void tabulateMeans();
   void tabulateProgram();
   void measureCone();
-  void makeBands();
   bool inCone(Vec3f direction) const {
     const Vec3f apart = direction - axis_;  // 1 - cos = |d - a|^2 / 2, exact for narrow cones
     return 0.5f * dot(apart, apart) <= oneMinusCos_;
@@ -61,15 +67,21 @@ class Environment {
   // World -> the frame of the table, not normalised: the world's matrix may be any that has an inverse.
   Vec3f toImage(Vec3f world) const;
   Vec3f fromImage(Vec3f image) const;  // not normalised
-  Vec3f inCell(uint32_t x, uint32_t y, float u, float v) const;
+  void putInTable(Place& place, Vec2f uv) const;
+  Look filtered(const Place& place) const;
+  void prefetchNodes(uint32_t node) const;
   void prefetch(const Place& place) const;
   Rgb imageAt(Vec2f uv) const;
+  template <class Weight>
+  void tabulate(const Weight& weight);
+  void tabulate(const std::vector<float>& weights);
   void makeTexels();
-  uint32_t texelAt(int x, int y) const {
+  struct Cell;
+  Cell cellAt(uint32_t node) const;
+  float densityOverMean(uint32_t node, const Cell& cell) const;
+  uint32_t nodeAt(int x, int y) const {
     return static_cast<uint32_t>(y + 1) * static_cast<uint32_t>(width_ + 2) + static_cast<uint32_t>(x + 1);
   }
-  void putInImage(Place& place, Vec2f uv, int x, int y) const;
-  Rgb filtered(uint32_t texel, Vec2f share) const;
   // Solid angle in the image's frame over that of the world, where `image` is toImage() of a unit vector: a linear map
   // M takes the solid angle dw at d to |det M| / |M d|^3 dw.
   float stretch(Vec3f image) const { return determinant_ / (dot(image, image) * length(image)); }
@@ -81,27 +93,23 @@ class Environment {
   float integral_ = 0;
   Vec3f axis_{0, 0, 1};    // of a sky that is within a cone alone
   float oneMinusCos_ = 0;  // of its half angle; 0: there is no cone
-  // The table's cells lie between meridians and parallels about this frame's z axis. It is that of an equirectangular
-  // image; in a mirror ball's, z is the axis of the ball, towards which all of the image's rim looks, so that its
-  // meridians are straight and its parallels circles about the middle.
+  // Directions are drawn as a weight at nodes says, which goes bilinearly from each to the next: of an image that is
+  // filtered so, as its radiance itself. Nodes lie at the middles of width x height parts of the sphere between
+  // meridians and parallels about this frame's z axis, as an equirectangular image's texels do; in a mirror ball's, z
+  // is the axis of the ball, towards which all of the image's rim looks, so that its meridians are straight and its
+  // parallels circles about the middle. The table's cells lie between the nodes; those below the first row of nodes and
+  // above the last one are half as high.
   float matrix_[9] = {}, inverse_[9] = {}, determinant_ = 1;  // the determinant without its sign
-  int width_ = 0, height_ = 0;                                // of the table, row 0 at the bottom (-z)
-  PiecewiseConstant2D table_;
-  // Of an image with a cell of the table for each texel, its colours beside the cells' probabilities, so that a look
-  // at both reads two places of memory and not three; with a border of one texel as the texture goes on there. Empty of
-  // other images.
+  int width_ = 0, height_ = 0;                                // of the nodes, row 0 at the bottom (-z)
+  PiecewiseConstant2D table_;                                 // (height + 1) x width
+  Table<float> nodes_;  // weights, with a border of one as they go on there; empty where there are texels_
+  // Of an image with a node for each texel, with the same border, its colours beside the density of the cell of which
+  // it is the lower left node, over the mean of the nodes' weights: then a look at both reads two places of memory and
+  // not four. Empty of other images.
   struct alignas(16) Texel {
-    float r, g, b, probability;
+    float r, g, b, scale;
   };
   Table<Texel> texels_;
-  // A row of the table lies between two polar angles; each is measured from the pole that is nearer to the row, by
-  // 1 - cos, which is exact where cos alone is not.
-  struct Band {
-    float begin, height;  // of 1 - cos: at the border towards that pole, and between the borders
-    bool up;              // the pole is +z
-    float density;        // 1 / the solid angle of a cell
-  };
-  std::vector<Band> bands_;
 };
 
 // One for each of the scene's worlds, which must stay where they are.

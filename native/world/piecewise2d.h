@@ -5,6 +5,9 @@
 // samples of a sun as many would be too many or too few as of independent ones.
 #pragma once
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -20,22 +23,28 @@ namespace wardmis {
 class PiecewiseConstant2D {
  public:
   PiecewiseConstant2D() = default;
-  // weights: >= 0 and finite, row after row of `width`; of either at most 65535. Cells of less than 2^-24 of their row
-  // may never be drawn: then their probability is 0.
-  PiecewiseConstant2D(const std::vector<double>& weights, int width) : width_(static_cast<uint32_t>(width)) {
-    sum_ = std::accumulate(weights.begin(), weights.end(), 0.0);
-    if (!(sum_ > 0)) return;
-    const std::size_t rows = weights.size() / width_;
-    rows_.resize(rows + 1);
-    columns_.resize(rows * (width_ + 1));
+  // row(y, w) writes the weights of row y, >= 0 and finite, `width` of them; of either at most 65535. Called for each
+  // row once, by several threads. Cells of less than 2^-24 of their row may never be drawn: then their probability is
+  // 0.
+  template <class Row>
+  PiecewiseConstant2D(std::size_t rows, int width, const Row& row)
+      : width_(static_cast<uint32_t>(width)), rows_(rows + 1), columns_(rows * (width_ + 1)), rowGuide_(kGuides) {
+    columnGuide_.resize(rows * kGuides);
     std::vector<double> each(rows);
-    for (std::size_t y = 0; y < rows; ++y) {
-      const double* const w = &weights[y * width_];
-      each[y] = cumulate(w, width_, &columns_[y * (width_ + 1)]);
-      guide(&columns_[y * (width_ + 1)], width_, columnGuide_);
-    }
-    cumulate(each.data(), rows, rows_.data());
-    guide(rows_.data(), rows, rowGuide_);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rows), [&](const tbb::blocked_range<std::size_t>& range) {
+      std::vector<double> w(width_);
+      for (std::size_t y = range.begin(); y < range.end(); ++y) {
+        row(y, w.data());
+        float* const c = &columns_[y * (width_ + 1)];
+        each[y] = cumulate(w.data(), width_, c);
+        guide(c, width_, &columnGuide_[y * kGuides]);
+      }
+    });
+    sum_ = cumulate(each.data(), rows, rows_.data());
+    if (sum_ > 0)
+      guide(rows_.data(), rows, rowGuide_.data());
+    else
+      *this = {};
   }
 
   bool empty() const { return rows_.empty(); }
@@ -88,13 +97,13 @@ class PiecewiseConstant2D {
     return sum;
   }
   template <class T>
-  static void guide(const T* c, std::size_t n, Table<uint16_t>& to) {
+  static void guide(const T* c, std::size_t n, uint16_t* to) {
     std::size_t at = 0;
     for (std::size_t k = 0; k < kSteps; ++k) {
       while (c[at + 1] <= static_cast<T>(k) / static_cast<T>(kSteps)) ++at;
-      to.push_back(static_cast<uint16_t>(at));
+      to[k] = static_cast<uint16_t>(at);
     }
-    to.push_back(static_cast<uint16_t>(n - 1));
+    to[kSteps] = static_cast<uint16_t>(n - 1);
   }
   template <class T>
   static std::size_t step(T u) {

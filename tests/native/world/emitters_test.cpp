@@ -44,7 +44,9 @@ TEST(Emitters, RaysMeetWhatSamplesAimAt) {
           const Vec3f from = at + normalize(Vec3f{static_cast<float>(u.x) - 0.5f, 0.4f, -1}) * (away * size);
           const auto v = random.square();
           const LightView view = emitters.view(from, {0, 0, 0}, 1);
-          const LightSample s = emitters.sample(from, emitters.choose(view, {v.x, static_cast<float>(v.y)}));
+          LightChoice choice = emitters.choose(view, {v.x, static_cast<float>(v.y)});
+          emitters.aim(choice);
+          const LightSample s = emitters.sample(from, choice);
           if (!(s.pdf > 0) || isBlack(s.radiance)) continue;
           Ray ray;
           ray.origin = from, ray.direction = s.direction, ray.kind = kSeenByDiffuse;
@@ -82,7 +84,8 @@ TEST(Emitters, AreCountedAsCyclesPicksThem) {
     Stream random(1, 2);
     for (int k = 0; k < 100; ++k) {
       const auto u = random.square();
-      const LightChoice choice = emitters.choose(view, {u.x, static_cast<float>(u.y)});
+      LightChoice choice = emitters.choose(view, {u.x, static_cast<float>(u.y)});
+      emitters.aim(choice);
       const LightSample s = emitters.sample({0, 0, 0}, choice);
       const float expected = version == 3 ? s.pdf / choice.probability / 2 : s.pdf;
       EXPECT_NEAR(s.counted / expected, 1, 1e-5);

@@ -16,6 +16,11 @@ std::vector<double> weights(size_t n, test::Random& random) {
   return w;
 }
 
+PiecewiseConstant2D tableOf(const std::vector<double>& w, int width) {
+  const auto columns = static_cast<size_t>(width);
+  return {w.size() / columns, width, [&](size_t y, double* row) { std::copy_n(&w[y * columns], columns, row); }};
+}
+
 struct Grid {
   size_t rows;
   int width;
@@ -26,7 +31,7 @@ TEST(PiecewiseConstant2D, ProbabilitiesAreThoseOfTheWeights) {
   test::Random random(1);
   for (const Grid& g : kGrids) {
     const std::vector<double> w = weights(g.rows * static_cast<size_t>(g.width), random);
-    const PiecewiseConstant2D table(w, g.width);
+    const PiecewiseConstant2D table = tableOf(w, g.width);
     double sum = 0;
     for (uint32_t i = 0; i < w.size(); ++i) {
       const auto p = double(table.probability(i));
@@ -48,7 +53,7 @@ TEST(PiecewiseConstant2D, DrawsWhatItSays) {
   test::Random random(2);
   for (const Grid& g : kGrids) {
     const std::vector<double> w = weights(g.rows * static_cast<size_t>(g.width), random);
-    const PiecewiseConstant2D table(w, g.width);
+    const PiecewiseConstant2D table = tableOf(w, g.width);
     constexpr int kClasses = 17, kParts = 4, kDraws = 1 << 22;
     const auto classOf = [&](uint32_t i) { return static_cast<int>(std::floor(std::log10(w[i]))) + 13; };
     std::vector<double> expected(kClasses * kParts, 0), observed(kClasses * kParts, 0);
@@ -85,7 +90,7 @@ TEST(PiecewiseConstant2D, KeepsPointsEven) {
   double sun = 0;
   for (int y = 20; y < 22; ++y)
     for (int x = 30; x < 32; ++x) sun += w[static_cast<size_t>(y * kWidth + x)] = 900;
-  const PiecewiseConstant2D table(w, kWidth);
+  const PiecewiseConstant2D table = tableOf(w, kWidth);
   const double share = sun / table.sum();
   double most = 0, squares = 0;
   constexpr uint32_t kPixels = 200, kPoints = 64;
@@ -106,7 +111,7 @@ TEST(PiecewiseConstant2D, KeepsPointsEven) {
 
 TEST(PiecewiseConstant2D, IsEmptyWithoutWeight) {
   EXPECT_TRUE(PiecewiseConstant2D().empty());
-  EXPECT_TRUE(PiecewiseConstant2D(std::vector<double>{0, 0}, 2).empty());
+  EXPECT_TRUE(tableOf({0, 0}, 2).empty());
 }
 
 }  // namespace
