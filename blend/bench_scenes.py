@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The scenes of ./dev bench, in Blender: `blender --background --addons wardmis --python blend/bench_scenes.py -- DIR NAME...`
 
-Those of blend/ as they are or with one thing changed, rooms of shaders that both renderers have alike, and those of which
+Those of blend/ as they are, by their own names, or with one thing changed, rooms of shaders that both renderers have alike, and those of which
 there is a number of something, as in lamps-100."""
 
 import math
@@ -34,8 +34,10 @@ def main(folder, names):
         kind, _, number = name.rpartition("-")
         if kind in NUMBERED:
             NUMBERED[kind](int(number))
-        else:
+        elif name in SCENES:
             SCENES[name]()
+        else:
+            opened(name)
         bpy.ops.wm.save_as_mainfile(filepath=str(Path(folder) / f"{name}.blend"), compress=True)
 
 
@@ -196,15 +198,12 @@ def instances(number):
 
 NUMBERED = {"lamps": lamps, "glowing": glowing, "triangles": triangles, "instances": instances}
 SCENES = {
-    "veach": lambda: opened("veach"),
     "veach-direct": lambda: opened("veach", "direct"),
-    "teapot": lambda: opened("teapot"),
     "teapot-direct": lambda: opened("teapot", "direct"),
     "veach-mesh-lights": veach_mesh_lights,
     "door": door,
     "area-lamps": area_lamps,
     "image-sky": image_sky,
-    "studio": lambda: opened("studio"),
 }
 
 if __name__ == "__main__":

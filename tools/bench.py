@@ -12,6 +12,7 @@ from typing import Any
 
 import blender
 from blender import ROOT
+from markdown import table
 
 SCENES = (
     "veach",
@@ -112,11 +113,6 @@ def measured(scene: str, folder: Path, options: argparse.Namespace) -> Row:
     return row(scene, json.loads((out / "report.json").read_text()))
 
 
-def markdown(rows: list[Row]) -> str:
-    lines = [HEADINGS, ["---"] * len(HEADINGS), *(r.cells() for r in rows)]
-    return "\n".join("| " + " | ".join(cells) + " |" for cells in lines)
-
-
 def main() -> int:
     parser = argparse.ArgumentParser(prog="./dev bench scenes", description=__doc__)
     parser.add_argument("scenes", nargs="*", default=SCENES, help=f"of: {' '.join(SCENES)} (all)")
@@ -137,7 +133,7 @@ def main() -> int:
             sys.exit(f"bench: {error}")
         (options.out / "bench.json").write_text(json.dumps([asdict(r) for r in rows], indent=1) + "\n")
     print(f"{rows[0].cycles}; {options.samples} samples per pixel, {options.resolution}, {options.seeds} seeds\n")
-    print(markdown(rows))
+    print(table(HEADINGS, (r.cells() for r in rows)))
     return 0
 
 

@@ -15,6 +15,7 @@ from statistics import median
 
 import blender
 from blender import ROOT
+from markdown import table
 
 SHORT, LONG, ROUNDS = 4, 20, 5  # samples per pixel; pairs
 LIMITED = ("veach", "teapot", "teapot-direct", "triangles-1000000")
@@ -42,20 +43,6 @@ class Bench:
     def __init__(self, folder: Path, binary: str, probe: str, resolution: str) -> None:
         self.folder, self.binary, self.probe, self.resolution = folder, binary, probe, resolution
 
-    def scene(self, name: str) -> Path:
-        """Made and exported, unless it is there."""
-        glb = self.folder / f"{name}.glb"
-        if not glb.exists():
-            print(f"bench: {name}", file=sys.stderr, flush=True)
-            blend = self.folder / f"{name}.blend"
-            blender.run(
-                "--python-exit-code", "1", "--python", ROOT / "blend" / "bench_scenes.py", "--", self.folder, name
-            )
-            script = ROOT / "blend" / "export_scene.py"
-            blender.run(blend, "--python-exit-code", "1", "--python", script, "--", glb)
-            blend.unlink()
-        return glb
-
     def render(self, scene: Path, samples: int, *options: str, probe: bool = False) -> tuple[dict, dict]:
         """Its statistics, and what the probe tells of Embree."""
         stats = self.folder / "stats.json"
@@ -73,7 +60,7 @@ class Bench:
 
     def bytes_per_pixel(self, name: str, *options: str) -> float:
         """By which the process grows with the image."""
-        scene, peaks = self.scene(name), []
+        scene, peaks = blender.exported(name, self.folder), []
         for side in (512, 1024):
             words = [self.binary, "render", scene, "-o", self.folder / "image.exr", "--spp", 32, "--progress", "none"]
             words += ["--resolution", f"{side}x{side}", *options]
@@ -82,7 +69,7 @@ class Bench:
         return (peaks[1] - peaks[0]) / (1024**2 - 512**2)
 
     def path(self, name: str, *options: str, limit: bool = False) -> Measured:
-        scene = self.scene(name)
+        scene = blender.exported(name, self.folder)
         times, rays = [], 0.0
         for _ in range(ROUNDS):
             (short, _), (long, _) = self.render(scene, SHORT, *options), self.render(scene, LONG, *options)
@@ -100,11 +87,6 @@ class Bench:
 def exponent(numbers: Sequence[float], times: Sequence[float]) -> float:
     """Of the power of the number by which times grow from the first to the last."""
     return math.log(times[-1] / times[0]) / math.log(numbers[-1] / numbers[0])
-
-
-def table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    lines = [headings, ["---"] + ["---:"] * (len(headings) - 1), *rows]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"
 
 
 def main() -> int:

@@ -4,6 +4,7 @@
 import json
 import os
 import subprocess
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -48,6 +49,19 @@ def render(blend: Path, out: Path, settings: dict[str, Any]) -> Rendered:
     if not out.exists():
         raise RenderFailed(f"Blender wrote no image {out}; it said:\n{said}")
     return rendered(out)
+
+
+def exported(name: str, folder: Path) -> Path:
+    """A scene of blend/bench_scenes.py as a file for the command, made unless it is there."""
+    glb = folder / f"{name}.glb"
+    if not glb.exists():
+        print(f"bench: {name}", file=sys.stderr, flush=True)
+        blend = folder / f"{name}.blend"
+        run("--python-exit-code", "1", "--python", ROOT / "blend" / "bench_scenes.py", "--", folder, name)
+        script = ROOT / "blend" / "export_scene.py"
+        run(blend, "--python-exit-code", "1", "--python", script, "--", glb)
+        blend.unlink()
+    return glb
 
 
 def rendered(path: Path) -> Rendered:

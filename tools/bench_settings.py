@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whether the default keeps its promise, to be in time no worse than the best fixed setting by more than its pilot: on
+twenty scenes, some of them against it, error and time of the default beside those of fixed settings. Run by ./dev bench
+settings."""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from statistics import geometric_mean
+
+import blender
+from blender import ROOT
+from markdown import table
+
+SCENES = (
+    "veach",
+    "veach-direct",
+    "veach-glossiness",
+    "veach-mesh-lights",
+    "teapot",
+    "teapot-direct",
+    "studio",
+    "door",
+    "area-lamps",
+    "image-sky",
+    "lamps-1",
+    "lamps-1024",
+    "glowing-2",
+    "glowing-20000",
+    "triangles-10000",
+    "instances-100",
+    "stiff-alphas",
+    "stiff-grazing",
+    "stiff-lights",
+    "stiff-mirror",
+)
+DEFAULT = "auto"
+# of each what may be best: few samples at a hit or many, shared evenly, by albedo or by moments; pixels by their error
+FIXED = {
+    "equal": "allocation=equal",
+    "equal, 2": "allocation=equal,samples-per-hit=2",
+    "equal, 6": "allocation=equal,samples-per-hit=6",
+    "albedo, 2": "allocation=albedo,samples-per-hit=2",
+    "second moment": "allocation=second-moment",
+    "equal, pixels": "allocation=equal,pixels=by-error",
+    "albedo, 2, pixels": "allocation=albedo,samples-per-hit=2,pixels=by-error",
+}
+
+
+@dataclass
+class Over:
+    """Variance x time of the default over a fixed setting's: below 1 the default is sooner there."""
+
+    setting: str
+    ratio: float
+    low: float  # of 95 %
+    high: float
+
+    def __str__(self) -> str:
+        return f"{self.ratio:.2f} [{self.low:.2f}, {self.high:.2f}]"
+
+
+def measured(scene: str, options: argparse.Namespace) -> list[Over]:
+    """Of each fixed setting, the best one first."""
+    integrator = "direct" if scene.endswith("-direct") else "path"
+    glb = blender.exported(scene.removesuffix("-direct"), options.out)
+    print(f"bench: {scene}", file=sys.stderr, flush=True)
+    study = options.out / f"{scene}-settings"
+    words = [os.environ["WARDMIS_BINARY"], "converge", glb, "-o", study, "--integrator", integrator]
+    words += ["-c", f"{DEFAULT}:allocation=auto,pixels=auto"]
+    for name, settings in FIXED.items():
+        words += ["-c", f"{name.replace(', ', '-').replace(' ', '-')}:{settings}"]
+    words += ["--seeds", options.seeds, "--max-spp", options.samples, "--resolution", options.resolution]
+    done = subprocess.run([*map(str, words)], capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        sys.exit(f"bench: {scene}: {done.stderr.strip()}")
+    report = json.loads((study / "report.json").read_text())
+    of = {c["name"]: c["efficiency"]["ratio"] for c in report["configurations"]}
+    found = []
+    for name in FIXED:
+        if ratio := of[name.replace(", ", "-").replace(" ", "-")]:  # none where there is no noise
+            found.append(Over(name, 1 / ratio["mean"], 1 / ratio["high"], 1 / ratio["low"]))
+    return sorted(found, key=lambda o: -o.ratio)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(prog="./dev bench settings", description=__doc__)
+    parser.add_argument("scenes", nargs="*", default=SCENES, help=f"of: {' '.join(SCENES)} (all)")
+    parser.add_argument("--seeds", type=int, default=8, help="renders of each setting (%(default)s)")
+    parser.add_argument("--samples", type=int, default=64, help="camera samples per pixel (%(default)s)")
+    parser.add_argument("--resolution", default="144x96", help="WxH (%(default)s)")
+    out = ROOT / "out" / "bench"
+    parser.add_argument("--out", type=Path, default=out, help="scenes, studies and settings.json (%(default)s)")
+    options = parser.parse_args()
+    if unknown := set(options.scenes) - set(SCENES):
+        parser.error(f"there is no scene {', '.join(sorted(unknown))}; there are: {' '.join(SCENES)}")
+    options.out = options.out.resolve()
+    options.out.mkdir(parents=True, exist_ok=True)
+    found: dict[str, list[Over]] = {}
+    for scene in options.scenes:
+        try:
+            found[scene] = measured(scene, options)
+        except blender.RenderFailed as error:
+            sys.exit(f"bench: {error}")
+        document = {name: [asdict(o) for o in over] for name, over in found.items()}
+        (options.out / "settings.json").write_text(json.dumps(document, indent=1) + "\n")
+    rows = [
+        (scene, over[0].setting, str(over[0]), str(next(o for o in over if o.setting == "equal")))
+        for scene, over in found.items()
+        if over
+    ]
+    print(f"{options.samples} samples per pixel, {options.resolution}, {options.seeds} seeds\n")
+    print(table(("scene", "best fixed setting", "error x time of the default over its", "over equal counts'"), rows, 2))
+    ratios = [over[0].ratio for over in found.values() if over]
+    print(f"The worst is {max(ratios):.2f}, the geometric mean {geometric_mean(ratios):.2f}.")
+    if silent := [scene for scene, over in found.items() if not over]:
+        print(f"Without noise, so that there is nothing to compare: {', '.join(silent)}.")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
