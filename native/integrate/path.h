@@ -37,14 +37,6 @@ TechniqueMask techniquesAt(const S& s, bool lights, bool surfaceRays) {
   return mask;
 }
 
-template <uint32_t N, size_t K>
-Rgb estimate(const RenderScene& scene, const Sampler& sampler, const InteractionOf<SurfaceOf<N, K>>& x,
-             const HitPlan<K>& plan, Counts& counts, HitRecord<K>* record, Continuations<K>& more) {
-  if ((N & kNeedsSpecular) != 0 && x.surface.needsDouble(dot(x.frame.z, x.wo)))
-    return estimateHit<N, double>(scene, sampler, x, plan, counts, record, more);
-  return estimateHit<N, float>(scene, sampler, x, plan, counts, record, more);
-}
-
 // Whether the path of a first hit's sample goes on, by a random number u: with a probability as small as its worth
 // where that is less than half of `mean`, what the hit's surface samples bring in mean of light from all around; it
 // then stands for those that do not. Paths of a faint lobe cost as much as those of a bright one, and bring little.
@@ -85,7 +77,7 @@ Rgb followPath(const RenderScene& scene, const Sampler& sampler, uint32_t pixelK
     plan.vertex = static_cast<uint32_t>(vertex);
     plan.index = index;
     Continuations<K> more;
-    sum += weight * estimate<N, K>(scene, sampler, x, plan, counts, nullptr, more);
+    sum += weight * estimateHit<N, K>(scene, sampler, x, plan, counts, nullptr, more);
     if (more.count == 0) break;
     const Continuation<K>& next = more.list[0];
     if (--left[next.bounce] < 0) break;

@@ -197,7 +197,7 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
       candidate = &candidateSums.make(0, [&] { return CandidateHit<K>(in.candidates.of(mask)); });
     record.emplace(HitRecord<K>{piloted ? moments : nullptr, candidate, split});
   }
-  sum += estimate<N, K>(world, in.sampler, x, plan, counts, record ? &*record : nullptr, more) * seenThrough;
+  sum += estimateHit<N, K>(world, in.sampler, x, plan, counts, record ? &*record : nullptr, more) * seenThrough;
   if (split != nullptr) [[unlikely]]
     addLight(light->direct, split->direct, seenThrough * exposure);
   if (taken != nullptr)

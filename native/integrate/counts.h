@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a render counts.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+
+#include "math/check.h"
+#include "mis/technique.h"
+
+namespace wardmis {
+
+// By technique.
+struct Counts {
+  using PerTechnique = std::array<uint64_t, kMaxTechniques>;
+  PerTechnique samples{};    // at the first hit
+  PerTechnique rays{};       // traced for samples; of the light: shadow rays
+  PerTechnique following{};  // rays of the paths that went on from samples of each technique
+  uint64_t cameraRays = 0;
+  // Directions above the surface at which a lobe's density is no normal number: e^-E is smaller than any.
+  uint64_t underflows = 0;
+  RareCounts rare;
+
+  static uint64_t sum(const PerTechnique& c) { return std::accumulate(c.begin(), c.end(), uint64_t{0}); }
+  uint64_t allRays() const { return cameraRays + sum(rays); }
+  Counts& operator+=(const Counts& b) {
+    for (size_t i = 0; i < kMaxTechniques; ++i)
+      samples[i] += b.samples[i], rays[i] += b.rays[i], following[i] += b.following[i];
+    cameraRays += b.cameraRays, underflows += b.underflows, rare += b.rare;
+    return *this;
+  }
+};
+
+}  // namespace wardmis
