@@ -43,7 +43,8 @@ DEFAULT = "auto"
 FIXED = {
     "equal": "allocation=equal",
     "equal, 2": "allocation=equal,samples-per-hit=2",
-    "equal, 6": "allocation=equal,samples-per-hit=6",
+    "equal, 3": "allocation=equal,samples-per-hit=3",
+    "equal, 12": "allocation=equal,samples-per-hit=12",
     "albedo, 2": "allocation=albedo,samples-per-hit=2",
     "second moment": "allocation=second-moment",
     "equal, pixels": "allocation=equal,pixels=by-error",

@@ -246,7 +246,7 @@ class WARDMIS_PG_scene(bpy.types.PropertyGroup):
         name="Samples per Hit",
         description="Directions in which a sample of the camera looks for light where it first meets a surface; the "
         "allocation shares them among the techniques. More take longer and have less noise",
-        default=3,
+        default=6,
         min=1,
         max=256,
         update=_draw_anew,

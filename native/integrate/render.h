@@ -57,7 +57,7 @@ struct RenderSettings {
   // > 0: stop as soon as the image is told to be better, at the latest after all samples or the time.
   double targetError = 0;
   std::optional<SampleRange> part;  // of the spp samples these alone; not with a time, nor measured costs
-  int samplesPerHit = 3;
+  int samplesPerHit = 6;
   uint32_t pilotSpp = 4;  // camera samples of the pilot per pixel, of `auto` per 2 x 2 pixels
   float minFraction = 0.1f;
   CostFrom costFrom = CostFrom::kRays;  // of samples, for `auto`
