@@ -772,7 +772,9 @@ class CommandLine(unittest.TestCase):
                 self.assertEqual(list((self.folder / "temporary").glob("blender_*")), [])
                 self.assertEqual([p for p in out.rglob("*") if "tmp" in p.name], [])
                 if runs is not None:
-                    self.assertEqual(len(self.runs_left()), runs)
+                    # between two renders nobody waits for it: on a busy machine the next one may be done before it is heard
+                    late = 1 if moment == "saved" else 0
+                    self.assertIn(len(self.runs_left()), range(runs, runs + late + 1))
                 done = self.interrupted("never", main)
                 self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
                 self.assertEqual(len(self.runs_left()), 4)
