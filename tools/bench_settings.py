@@ -6,6 +6,7 @@ settings."""
 import argparse
 import json
 import os
+import shutil
 import subprocess
 import sys
 from dataclasses import asdict, dataclass
@@ -71,6 +72,7 @@ def measured(scene: str, options: argparse.Namespace) -> list[Over]:
     glb = blender.exported(scene.removesuffix("-direct"), options.out)
     print(f"bench: {scene}", file=sys.stderr, flush=True)
     study = options.out / f"{scene}-settings"
+    shutil.rmtree(study, ignore_errors=True)  # an earlier one would be gone on with, not measured
     words = [os.environ["WARDMIS_BINARY"], "converge", glb, "-o", study, "--integrator", integrator]
     words += ["-c", f"{DEFAULT}:allocation=auto,pixels=auto"]
     for name, settings in FIXED.items():
