@@ -43,8 +43,7 @@ struct PathLimits {
 template <size_t K>
 struct HitPlan {
   Fractions<K> fractions{};  // of the techniques that this hit has
-  TechniqueMask available = Techniques<K>::kAll;
-  int samples = 0;  // in all; at most the batch's capacity
+  int samples = 0;           // in all; at most the batch's capacity
   Integrand integrand = Integrand::kSplit;
   Weights weights = Weights::kBalance;
   uint32_t pixelKey = 0, vertex = 0;

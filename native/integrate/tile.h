@@ -172,7 +172,6 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
       allocated != nullptr && follows && covers<K>(allocated->fractions, mask) ? allocated->fractions : in.fractions;
   plan.index = sample;
   plan.pixelKey = pixelKey;
-  plan.available = mask;
   if (candidates != nullptr) {  // the pilot of `auto`: each technique alike
     plan.samples = kSets * std::popcount(mask);
     plan.fractions = restrict<K>({}, mask);
