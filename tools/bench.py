@@ -6,6 +6,7 @@ import argparse
 import json
 import shutil
 import sys
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -113,18 +114,24 @@ def measured(scene: str, folder: Path, options: argparse.Namespace) -> Row:
     return row(scene, json.loads((out / "report.json").read_text()))
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(prog="./dev bench scenes", description=__doc__)
-    parser.add_argument("scenes", nargs="*", default=SCENES, help=f"of: {' '.join(SCENES)} (all)")
+def asked(verb: str, description: str | None, known: Sequence[str], found: str) -> argparse.Namespace:
+    """What the command line asks for; its folder is there. found: what that will hold."""
+    parser = argparse.ArgumentParser(prog=f"./dev bench {verb}", description=description)
+    parser.add_argument("scenes", nargs="*", default=known, help=f"of: {' '.join(known)} (all)")
     parser.add_argument("--seeds", type=int, default=8, help="renders of each configuration (%(default)s)")
     parser.add_argument("--samples", type=int, default=64, help="camera samples per pixel (%(default)s)")
     parser.add_argument("--resolution", default="144x96", help="WxH (%(default)s)")
-    parser.add_argument("--out", type=Path, default=ROOT / "out" / "bench", help="reports and bench.json (%(default)s)")
+    parser.add_argument("--out", type=Path, default=ROOT / "out" / "bench", help=f"{found} (%(default)s)")
     options = parser.parse_args()
-    if unknown := set(options.scenes) - set(SCENES):
-        parser.error(f"there is no scene {', '.join(sorted(unknown))}; there are: {' '.join(SCENES)}")
+    if unknown := set(options.scenes) - set(known):
+        parser.error(f"there is no scene {', '.join(sorted(unknown))}; there are: {' '.join(known)}")
     options.out = options.out.resolve()
     options.out.mkdir(parents=True, exist_ok=True)
+    return options
+
+
+def main() -> int:
+    options = asked("scenes", __doc__, SCENES, "reports and bench.json")
     rows: list[Row] = []
     for scene in options.scenes:
         try:

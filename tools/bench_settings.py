@@ -10,11 +10,10 @@ import shutil
 import subprocess
 import sys
 from dataclasses import asdict, dataclass
-from pathlib import Path
 from statistics import geometric_mean
 
 import blender
-from blender import ROOT
+from bench import asked
 from markdown import table
 
 SCENES = (
@@ -43,13 +42,13 @@ DEFAULT = "auto"
 # of each what may be best: few samples at a hit or many, shared evenly, by albedo or by moments; pixels by their error
 FIXED = {
     "equal": "allocation=equal",
-    "equal, 2": "allocation=equal,samples-per-hit=2",
-    "equal, 3": "allocation=equal,samples-per-hit=3",
-    "equal, 12": "allocation=equal,samples-per-hit=12",
-    "albedo, 2": "allocation=albedo,samples-per-hit=2",
-    "second moment": "allocation=second-moment",
-    "equal, pixels": "allocation=equal,pixels=by-error",
-    "albedo, 2, pixels": "allocation=albedo,samples-per-hit=2,pixels=by-error",
+    "equal-2": "allocation=equal,samples-per-hit=2",
+    "equal-3": "allocation=equal,samples-per-hit=3",
+    "equal-12": "allocation=equal,samples-per-hit=12",
+    "albedo-2": "allocation=albedo,samples-per-hit=2",
+    "second-moment": "allocation=second-moment",
+    "equal-pixels": "allocation=equal,pixels=by-error",
+    "albedo-2-pixels": "allocation=albedo,samples-per-hit=2,pixels=by-error",
 }
 
 
@@ -76,7 +75,7 @@ def measured(scene: str, options: argparse.Namespace) -> list[Over]:
     words = [os.environ["WARDMIS_BINARY"], "converge", glb, "-o", study, "--integrator", integrator]
     words += ["-c", f"{DEFAULT}:allocation=auto,pixels=auto"]
     for name, settings in FIXED.items():
-        words += ["-c", f"{name.replace(', ', '-').replace(' ', '-')}:{settings}"]
+        words += ["-c", f"{name}:{settings}"]
     words += ["--seeds", options.seeds, "--max-spp", options.samples, "--resolution", options.resolution]
     done = subprocess.run([*map(str, words)], capture_output=True, text=True, check=False)
     if done.returncode != 0:
@@ -85,24 +84,13 @@ def measured(scene: str, options: argparse.Namespace) -> list[Over]:
     of = {c["name"]: c["efficiency"]["ratio"] for c in report["configurations"]}
     found = []
     for name in FIXED:
-        if ratio := of[name.replace(", ", "-").replace(" ", "-")]:  # none where there is no noise
+        if ratio := of[name]:  # none where there is no noise
             found.append(Over(name, 1 / ratio["mean"], 1 / ratio["high"], 1 / ratio["low"]))
     return sorted(found, key=lambda o: -o.ratio)
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(prog="./dev bench settings", description=__doc__)
-    parser.add_argument("scenes", nargs="*", default=SCENES, help=f"of: {' '.join(SCENES)} (all)")
-    parser.add_argument("--seeds", type=int, default=8, help="renders of each setting (%(default)s)")
-    parser.add_argument("--samples", type=int, default=64, help="camera samples per pixel (%(default)s)")
-    parser.add_argument("--resolution", default="144x96", help="WxH (%(default)s)")
-    out = ROOT / "out" / "bench"
-    parser.add_argument("--out", type=Path, default=out, help="scenes, studies and settings.json (%(default)s)")
-    options = parser.parse_args()
-    if unknown := set(options.scenes) - set(SCENES):
-        parser.error(f"there is no scene {', '.join(sorted(unknown))}; there are: {' '.join(SCENES)}")
-    options.out = options.out.resolve()
-    options.out.mkdir(parents=True, exist_ok=True)
+    options = asked("settings", __doc__, SCENES, "scenes, studies and settings.json")
     found: dict[str, list[Over]] = {}
     for scene in options.scenes:
         try:

@@ -683,6 +683,7 @@ def around_save(which, after):
         save(self, path)
         if here and after:
             ctrl_c()
+            time.sleep(0.2)  # another thread may be the one that hears it, and the next render is a short one
     cycles._Renders._save = saving
 
 def saving():
@@ -772,9 +773,7 @@ class CommandLine(unittest.TestCase):
                 self.assertEqual(list((self.folder / "temporary").glob("blender_*")), [])
                 self.assertEqual([p for p in out.rglob("*") if "tmp" in p.name], [])
                 if runs is not None:
-                    # between two renders nobody waits for it: on a busy machine the next one may be done before it is heard
-                    late = 1 if moment == "saved" else 0
-                    self.assertIn(len(self.runs_left()), range(runs, runs + late + 1))
+                    self.assertEqual(len(self.runs_left()), runs)
                 done = self.interrupted("never", main)
                 self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
                 self.assertEqual(len(self.runs_left()), 4)
