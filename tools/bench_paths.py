@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a path costs: beside the time that Embree alone takes for its rays, and as a scene grows. Processor time on one
-thread of a render less that of a short one, pairs run in turn, medians; equal counts, three samples a hit. Run by ./dev bench paths."""
+thread of a render less that of a short one, pairs run in turn, medians; equal counts. Run by ./dev bench paths."""
 
 import argparse
 import json
@@ -48,7 +48,6 @@ class Bench:
         stats = self.folder / "stats.json"
         words = [self.binary, "render", scene, "-o", self.folder / "image.exr", "--spp", samples, "--stats", stats]
         words += ["--threads", 1, "--pixels", "even", "--allocation", "equal", "--progress", "none"]
-        words += ["--samples-per-hit", 3]  # one for each technique
         words += [] if "--resolution" in options else ["--resolution", self.resolution]
         environment = {**os.environ, **({"LD_PRELOAD": self.probe} if probe else {})}
         done = subprocess.run(

@@ -94,13 +94,34 @@ struct CatcherSample {
   Rgb sky{0, 0, 0};      // behind it, or where there is nothing
 };
 
+// What a pixel's hits share their samples by: the same for all of one face in a block of visits.
+template <size_t K>
+class WholeFractions {
+ public:
+  // whole numbers over each block of visits 2^k ... 2^(k+1) - 1, over which the sampler spreads u evenly
+  const Fractions<K>& of(const Fractions<K>& shares, TechniqueMask mask, int samples, uint32_t visit) {
+    const uint32_t block = std::bit_floor(visit);
+    if (&shares != shares_ || mask != mask_ || block != block_) {
+      shares_ = &shares, mask_ = mask, block_ = block;
+      fractions_ = wholeCounts<K>(restrict<K>(shares, mask), samples, block);
+    }
+    return fractions_;
+  }
+
+ private:
+  const Fractions<K>* shares_ = nullptr;
+  TechniqueMask mask_ = 0;
+  uint32_t block_ = 0;
+  Fractions<K> fractions_{};
+};
+
 // Radiance along one camera ray of a world. data, light, catcher: null where they are not wanted. taken: counts the
 // pixel's samples of each technique; may be null, too.
 template <uint32_t N, size_t K>
 Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& camera, uint32_t pixelKey,
-                 uint32_t sample, const PixelFractions<K>* allocated, Pixel& pixel, DataPixel* data, LightPixel* light,
-                 CatcherSample* catcher, uint32_t* taken, PilotPixel* pilot, HitMoments<K>* moments,
-                 CandidateSums<K>* candidates, Counts& counts) {
+                 uint32_t sample, const PixelFractions<K>* allocated, WholeFractions<K>& whole, Pixel& pixel,
+                 DataPixel* data, LightPixel* light, CatcherSample* catcher, uint32_t* taken, PilotPixel* pilot,
+                 HitMoments<K>* moments, CandidateSums<K>* candidates, Counts& counts) {
   ++counts.cameraRays;
   const bool transparent = world.scene.film.transparent;
   const float exposure = world.scene.film.exposure;
@@ -176,10 +197,12 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
     plan.samples = kSets * std::popcount(mask);
     plan.fractions = restrict<K>({}, mask);
   } else {
-    // whole numbers over each block of visits 2^k ... 2^(k+1) - 1, over which the sampler spreads u evenly
     plan.samples = in.samplesPerHit;
-    plan.fractions = wholeCounts<K>(restrict<K>(in.rule == Allocation::kAlbedo ? albedoFractions<K>(s) : shares, mask),
-                                    plan.samples, std::bit_floor(plan.index));
+    if (in.rule == Allocation::kAlbedo) [[unlikely]]
+      plan.fractions =
+          wholeCounts<K>(restrict<K>(albedoFractions<K>(s), mask), plan.samples, std::bit_floor(plan.index));
+    else
+      plan.fractions = whole.of(shares, mask, plan.samples, plan.index);
   }
   plan.integrand = in.integrand;
   plan.weights = in.weights;
@@ -263,6 +286,7 @@ void renderTile(const KernelInput<K>& in, const Tile& tile, FilmBuffer& film, Pi
       const size_t index = static_cast<size_t>(y) * static_cast<size_t>(film.width) + static_cast<size_t>(x);
       Pixel& pixel = film.pixels[index];
       const PixelFractions<K>* allocated = in.perPixel != nullptr ? &in.perPixel->at(x, y) : nullptr;
+      WholeFractions<K> whole;
       CandidateSums<K>* candidates =
           pilot != nullptr && !pilot->candidates.empty() ? &pilot->candidates[index] : nullptr;
       HitMoments<K>* moments = pilot != nullptr && !pilot->moments.empty() ? &pilot->moments[index] : nullptr;
@@ -292,8 +316,8 @@ void renderTile(const KernelInput<K>& in, const Tile& tile, FilmBuffer& film, Pi
         }
         uint32_t* const taken = &film.sampleCounts[index * K];
         if (film.catchers.empty()) [[likely]] {
-          const Rgb value = cameraSample<N, K>(in, in.scene, ray, key, s, allocated, pixel, data, light, nullptr, taken,
-                                               pilotPixel, moments, candidates, counts) *
+          const Rgb value = cameraSample<N, K>(in, in.scene, ray, key, s, allocated, whole, pixel, data, light, nullptr,
+                                               taken, pilotPixel, moments, candidates, counts) *
                             exposure;
           if (counts.rare.admit(value, in.least)) pixel.add(value);
           continue;
@@ -301,15 +325,15 @@ void renderTile(const KernelInput<K>& in, const Tile& tile, FilmBuffer& film, Pi
         // the same points in both worlds, so that where catchers have no shadow the quotient is 1
         Pixel again = pixel;
         CatcherSample seen;
-        const Rgb value = cameraSample<N, K>(in, in.scene, ray, key, s, allocated, pixel, data, light, &seen, taken,
-                                             pilotPixel, moments, candidates, counts) *
+        const Rgb value = cameraSample<N, K>(in, in.scene, ray, key, s, allocated, whole, pixel, data, light, &seen,
+                                             taken, pilotPixel, moments, candidates, counts) *
                           exposure;
         if (!counts.rare.admit(value, in.least)) continue;
         pixel.add(value);
         addCatchers(film.catchers[index], value, exposure, pixel.alpha[0] - again.alpha[0], seen,
                     [&](CatcherSample& alone) {
-                      return cameraSample<N, K>(in, *in.catchers, ray, key, s, allocated, again, nullptr, nullptr,
-                                                &alone, nullptr, nullptr, nullptr, nullptr, counts);
+                      return cameraSample<N, K>(in, *in.catchers, ray, key, s, allocated, whole, again, nullptr,
+                                                nullptr, &alone, nullptr, nullptr, nullptr, nullptr, counts);
                     });
       }
       if (!film.rays.empty()) film.rays[index] += static_cast<uint32_t>(counts.allRays() - raysBefore);
