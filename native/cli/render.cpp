@@ -24,6 +24,7 @@
 #include "math/error.h"
 #include "report/provenance.h"
 #include "scene/defaults.h"
+#include "world/needs.h"
 
 namespace wardmis {
 namespace {

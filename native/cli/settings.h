@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "integrate/render.h"
+#include "integrate/settings.h"
 #include "math/error.h"
 #include "scene/scene.h"
 

@@ -5,6 +5,7 @@
 
 #include "cli/settings.h"
 #include "math/clones.h"
+#include "world/needs.h"
 
 namespace wardmis {
 

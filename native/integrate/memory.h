@@ -2,7 +2,9 @@
 // What a render's frame takes of memory, and whether there is so much.
 #pragma once
 
-#include "integrate/render.h"
+#include "film/error_estimate.h"
+#include "film/film.h"
+#include "integrate/settings.h"
 
 namespace wardmis {
 

@@ -400,21 +400,6 @@ FilmBuffer renderInArena(const BuiltScene& built, const RenderSettings& settings
 
 }  // namespace
 
-PathLimits RenderSettings::limits() const {
-  PathLimits limits;
-  if (integrator == Integrator::kDirect) return limits;
-  limits.depth = maxDepth;
-  limits.bounces[kGlossyBounce] = maxGlossy, limits.bounces[kDiffuseBounce] = maxDiffuse;
-  limits.bounces[kTransmissionBounce] = maxTransmission;
-  return limits;
-}
-
-bool RenderSettings::sharesPixels() const {
-  if (part || pixels == PixelSamples::kEven) return false;  // parts of an image do not know of each other
-  if (!open() && PixelSurvey::samplesFor(spp) == 0) return false;
-  return pixels == PixelSamples::kByError || (allocation == Allocation::kAuto && sampler != SamplerType::kStratified);
-}
-
 double pilotApart(const RenderSettings& s) {
   return coarse(s) ? double(pilotOf(s, targetOf(s))) / (kCoarse * kCoarse) : 0;
 }
@@ -434,20 +419,6 @@ FilmBuffer render(const Scene& scene, const RenderSettings& settings, Statistics
     film = renderInArena(built, settings, statistics, observer);
   });
   return film;
-}
-
-std::string_view name(Integrator i) { return i == Integrator::kDirect ? "direct" : "path"; }
-std::string_view name(SamplerType s) {
-  constexpr std::string_view names[] = {"independent", "stratified", "sobol"};
-  return names[static_cast<int>(s)];
-}
-std::string_view name(PixelSamples p) {
-  constexpr std::string_view names[] = {"even", "by-error", "auto"};
-  return names[static_cast<int>(p)];
-}
-std::string_view name(FilterType f) {
-  constexpr std::string_view names[] = {"box", "gaussian", "blackman-harris"};
-  return names[static_cast<int>(f)];
 }
 
 }  // namespace wardmis

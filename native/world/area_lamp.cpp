@@ -170,8 +170,8 @@ void AreaLamp::narrow(Part& part) const {
   part.area = area;
 }
 
-AreaLamp::Sample AreaLamp::sample(Vec3f from, Vec2f u) const {
-  Sample s;
+LampSample AreaLamp::sample(Vec3f from, Vec2f u) const {
+  LampSample s;
   const Part part = seen(from);
   Vec3f to;
   float solidAngle = 0;

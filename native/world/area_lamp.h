@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "scene/scene.h"
+#include "world/lamp_sample.h"
 
 namespace wardmis {
 
@@ -30,12 +31,7 @@ class AreaLamp {
   // What its radiance is multiplied by in the unit direction d, which leaves it.
   float profile(Vec3f d) const;
 
-  struct Sample {
-    Vec3f direction{0, 0, 0};  // unit, towards the lamp
-    float distance = 0;
-    float pdf = 0;  // per solid angle; 0: nothing arrives
-  };
-  Sample sample(Vec3f from, Vec2f u) const;
+  LampSample sample(Vec3f from, Vec2f u) const;
   // Where a ray with the unit direction d meets it; 0: nowhere.
   float meet(Vec3f from, Vec3f d) const;
   // The density of sample() at the unit direction d, in which the lamp is met at the distance t.

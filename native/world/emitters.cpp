@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "world/emitters.h"
 
+#include <algorithm>
 #include <cmath>
-#include <unordered_map>
 
 #include "math/number.h"
 #include "math/warp.h"
 #include "program/vectors.h"
 #include "scene/inputs.h"
+#include "world/disk_lamp.h"
 #include "world/shading.h"
+#include "world/sphere_lamp.h"
+#include "world/triangle_luminance.h"
 
 namespace wardmis {
 namespace {
@@ -17,91 +20,6 @@ constexpr float kFar = 3e38f;
 constexpr float kPif = kPi<float>;
 
 float fraction(float v) { return v - std::floor(v); }
-
-// Luminances of emissive triangles, for their selection.
-class TriangleLuminance {
- public:
-  explicit TriangleLuminance(const Scene& scene) : scene_(scene), means_(scene.textures.size(), -1) {}
-
-  // Of a texture: the mean over a grid that is about as fine as the texels that the triangle covers. The grid may miss
-  // what shines between its points, and a triangle that shines must be aimed at: never less than a share of the image's
-  // own mean.
-  double of(const Placement& p, const Shape& s, uint32_t triangle) {
-    const ColorInput& e = scene_.materials[static_cast<size_t>(s.material)].emission;
-    if (e.result >= 0) return ofProgram(p, s, triangle);
-    if (e.texture.texture < 0 || s.part->uvs.empty()) return double(strength(e.value));
-    const uint32_t* i = s.indices + 3 * size_t{triangle};
-    const Vec2f a = s.part->uvs[i[0]], b = s.part->uvs[i[1]], c = s.part->uvs[i[2]];
-    const int n = divisions(e.texture, a, b, c);
-    const auto at = [&](float u, float v) {
-      const float w = 1 - u - v;
-      const Vec2f uv{w * a.x + u * b.x + v * c.x, w * a.y + u * b.y + v * c.y};
-      return double(strength(e.value * sampleRgb(scene_, e.texture, uv)));
-    };
-    double sum = 0;
-    for (int y = 0; y < n; ++y)
-      for (int x = 0; x < n - y; ++x) {  // the middles of the n^2 triangles that it divides into
-        const float u = static_cast<float>(x), v = static_cast<float>(y), size = 1 / static_cast<float>(n);
-        sum += at((u + 1 / 3.f) * size, (v + 1 / 3.f) * size);
-        if (x < n - y - 1) sum += at((u + 2 / 3.f) * size, (v + 2 / 3.f) * size);
-      }
-    constexpr double kLeast = 0.02;
-    return std::max(sum / (n * n), kLeast * mean(e));
-  }
-
- private:
-  static constexpr float kMostDivisions = 16;
-
-  // Of a program: the mean over a few points, each seen from before it. What shines between them must be aimed at too:
-  // never less than a share of what the most shining point of the mesh so far has, or else of the constant factor.
-  double ofProgram(const Placement& p, const Shape& s, uint32_t triangle) {
-    constexpr float kPoints[][2] = {{1 / 3.f, 1 / 3.f}, {1 / 6.f, 1 / 6.f}, {2 / 3.f, 1 / 6.f}, {1 / 6.f, 2 / 3.f}};
-    constexpr double kLeast = 0.02;
-    const auto corner = [&](int k) {
-      const Vec3f v = s.positions[s.indices[3 * size_t{triangle} + static_cast<size_t>(k)]];
-      return p.flat ? v : p.toWorld.point(v);
-    };
-    const Vec3f a = corner(0), ab = corner(1) - a, ac = corner(2) - a, n = cross(ab, ac);
-    const float size = std::sqrt(length(n));
-    double sum = 0;
-    for (const auto& q : kPoints) {
-      const Vec3f before = a + ab * q[0] + ac * q[1] + (size > 0 ? n / size : n);
-      const double here = double(strength(emissionAt(scene_, p, s, triangle, q[0], q[1], before, 0)));
-      if (std::isfinite(here)) sum += here;
-    }
-    const double mean = sum / double(std::size(kPoints));
-    double& most = most_.try_emplace(&s, 0).first->second;
-    most = std::max(most, mean);
-    const double factor = double(strength(scene_.materials[static_cast<size_t>(s.material)].emission.value));
-    return std::max(mean, kLeast * (most > 0 ? most : factor));
-  }
-
-  const Image& image(int texture) const {
-    return scene_.images[static_cast<size_t>(scene_.textures[static_cast<size_t>(texture)].image)];
-  }
-  int divisions(const TextureUse& use, Vec2f a, Vec2f b, Vec2f c) const {
-    const Image& texels = image(use.texture);
-    a = transformed(use, a), b = transformed(use, b), c = transformed(use, c);
-    const float area = 0.5f * std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
-    const float covered = area * static_cast<float>(texels.width) * static_cast<float>(texels.height);
-    return covered > 1 ? static_cast<int>(std::ceil(std::min(std::sqrt(covered), kMostDivisions))) : 1;
-  }
-  double mean(const ColorInput& e) {
-    double& known = means_[static_cast<size_t>(e.texture.texture)];
-    if (known < 0) {
-      const Image& texels = image(e.texture.texture);
-      const size_t count = static_cast<size_t>(texels.width) * static_cast<size_t>(texels.height);
-      known = 0;
-      for (size_t i = 0; i < count; ++i) known += double(strength(texelRgb(texels, i)));
-      known /= static_cast<double>(count);
-    }
-    return known * double(strength(e.value));
-  }
-
-  const Scene& scene_;
-  std::unordered_map<const Shape*, double> most_;  // of programs
-  std::vector<double> means_;                      // luminance of each texture's image; < 0: not known yet
-};
 
 // Whether it keeps angles.
 bool isEven(const Affine& a) {
@@ -134,11 +52,9 @@ LightBounds Emitters::boundsOf(const Lamp& lamp, const Light& light) {
       b.lower = b.lower - r, b.upper = b.upper + r;
       break;
     }
-    case Kind::kSunCone:
-    case Kind::kSunDisk:
-    case Kind::kDeltaSun:
+    case Kind::kSun:
       b.distant = true;
-      b.axis = lamp.center, b.cosO = 1 - lamp.oneMinusCos;
+      b.axis = lamp.center, b.cosO = 1 - lamp.sun.oneMinusCos();
       break;
     default:
       break;
@@ -189,24 +105,11 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Env
         break;
       }
       case LightType::kSun:
+        l.kind = Kind::kSun;
         l.center = normalize(light.toWorld.z);
-        l.kind = !(light.angle > 1e-5f) ? Kind::kDeltaSun : light.flat ? Kind::kSunDisk : Kind::kSunCone;
-        if (l.kind != Kind::kDeltaSun) {
-          const float half = 0.5f * light.angle, s = std::sin(0.5f * half);
-          l.oneMinusCos = 2 * s * s;
-          if (light.flat) {
-            // integral over the disk of cos = 2 cos h/(1 + cos h) times that of 1: the irradiance, and the power
-            const float cosHalf = std::max(1e-6f, std::cos(half));
-            const float all = (1 + cosHalf) / (2 * cosHalf);
-            l.radius = std::sqrt(std::max(0.0f, 1 - cosHalf * cosHalf)) / cosHalf;
-            l.area = kPif * l.radius * l.radius;
-            l.emitted = light.emitted * (all / l.area);
-            w = intensity * double(all);
-            break;
-          }
-          const float sinHalf = std::sin(half);
-          l.emitted = light.emitted / (kPif * sinHalf * sinHalf);
-        }
+        l.sun = Sun(l.center, light.angle, light.flat);
+        l.emitted = l.sun.radiance(light.emitted);
+        w = intensity * double(l.sun.excess());
         break;
     }
     if (light.program) {
@@ -214,7 +117,7 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Env
       w *= meanFactor(l, geometry.radius());
     }
     const auto index = static_cast<uint32_t>(lamps_.size());
-    const bool seen = l.kind != Kind::kDeltaPoint && l.kind != Kind::kDeltaSun && l.shadow;
+    const bool seen = l.kind != Kind::kDeltaPoint && (l.kind != Kind::kSun || !l.sun.delta()) && l.shadow;
     l.exclusive = !seen || !light.met;
     (l.exclusive ? exclusive_ : shared_) = true;
     if (light.type == LightType::kSun) {
@@ -327,9 +230,7 @@ Rgb Emitters::factor(const Lamp& lamp, Vec3f from, Vec3f d, float t, int bounces
     case Kind::kDeltaPoint:
       p.position = lamp.center;
       break;
-    case Kind::kDeltaSun:
-    case Kind::kSunCone:
-    case Kind::kSunDisk:
+    case Kind::kSun:
       p.position = -d;
       break;
     default:
@@ -347,7 +248,7 @@ double Emitters::meanFactor(const Lamp& lamp, float distance) const {
     const Vec2f u{(static_cast<float>(i) + 0.5f) / kPoints, fraction(0.618033989f * static_cast<float>(i))};
     Vec3f d = toCone(u, 2.0f);  // of the light
     Vec3f position = lamp.center;
-    if (lamp.kind == Kind::kDeltaSun || lamp.kind == Kind::kSunCone || lamp.kind == Kind::kSunDisk) {
+    if (lamp.kind == Kind::kSun) {
       d = -lamp.center;
     } else if (lamp.kind == Kind::kArea) {
       const float a = 2 * fraction(0.754877666f * static_cast<float>(i)) - 1;
@@ -431,42 +332,20 @@ LightSample Emitters::sample(Vec3f from, const LightChoice& choice, int bounces,
 
   const Lamp& lamp = lamps_[index];
   if (bounces > lamp.maxBounces) return s;
+  const auto on = [&](const LampSample& surface) {
+    s.direction = surface.direction, s.distance = surface.distance, s.pdf = surface.pdf;
+    if (s.pdf > 0) s.radiance = profile(lamp, -s.direction);
+  };
   switch (lamp.kind) {
-    case Kind::kArea: {
-      const AreaLamp::Sample on = lamp.plane.sample(from, u);
-      if (!(on.pdf > 0)) return s;
-      s.direction = on.direction, s.distance = on.distance, s.pdf = on.pdf;
-      s.radiance = profile(lamp, -s.direction);
+    case Kind::kArea:
+      on(lamp.plane.sample(from, u));
       break;
-    }
-    case Kind::kFacingDisk: {
-      const Vec3f toCenter = lamp.center - from;
-      const float d2 = dot(toCenter, toCenter);
-      if (!(d2 > 0)) return s;
-      const Framef f = Framef::around(toCenter / std::sqrt(d2));
-      const Vec2f d = toDisk(u);
-      const Vec3f to = toCenter + (f.x * d.x + f.y * d.y) * lamp.radius;
-      const float t2 = dot(to, to);
-      s.distance = std::sqrt(t2);
-      s.direction = to / s.distance;
-      s.pdf = t2 * s.distance / (std::sqrt(d2) * kPif * lamp.radius * lamp.radius);
-      s.radiance = profile(lamp, -s.direction);
+    case Kind::kFacingDisk:
+      on(DiskLamp{lamp.center, lamp.radius}.sample(from, u));
       break;
-    }
-    case Kind::kSphere: {
-      const Vec3f toCenter = lamp.center - from;
-      const float d2 = dot(toCenter, toCenter), r2 = lamp.radius * lamp.radius;
-      if (!(d2 > r2)) return s;  // inside: only met by the surface's techniques
-      const float sin2 = r2 / d2;
-      const float oneMinusCos = sin2 / (1 + std::sqrt(1 - sin2));
-      const float d = std::sqrt(d2);
-      s.direction = Framef::around(toCenter / d).toWorld(toCone(u, oneMinusCos));
-      const float along = dot(s.direction, toCenter);
-      s.distance = along - std::sqrt(std::max(0.0f, r2 - (d2 - along * along)));
-      s.pdf = 1 / (2 * kPif * oneMinusCos);
-      s.radiance = profile(lamp, -s.direction);
+    case Kind::kSphere:
+      on(SphereLamp{lamp.center, lamp.radius}.sample(from, u));
       break;
-    }
     case Kind::kDeltaPoint: {
       const Vec3f to = lamp.center - from;
       const float d2 = dot(to, to);
@@ -477,27 +356,10 @@ LightSample Emitters::sample(Vec3f from, const LightChoice& choice, int bounces,
       s.pdf = 1;
       break;
     }
-    case Kind::kDeltaSun:
-      s.distance = kFar;
-      s.direction = lamp.center;
-      s.radiance = lamp.emitted;
-      s.pdf = 1;
-      break;
-    case Kind::kSunCone:
-      s.distance = kFar;
-      s.direction = Framef::around(lamp.center).toWorld(toCone(u, lamp.oneMinusCos));
-      s.radiance = lamp.emitted;
-      s.pdf = 1 / (2 * kPif * lamp.oneMinusCos);
-      break;
-    case Kind::kSunDisk: {
-      const Framef f = Framef::around(lamp.center);
-      const Vec2f d = toDisk(u);
-      const Vec3f to = lamp.center + (f.x * d.x + f.y * d.y) * lamp.radius;
-      const float cos3 = 1 / (dot(to, to) * length(to));  // of the angle to the axis, cubed
-      s.distance = kFar;
-      s.direction = normalize(to);
-      s.radiance = lamp.emitted / cos3;
-      s.pdf = 1 / (lamp.area * cos3);
+    case Kind::kSun: {
+      const Sun::Sample on = lamp.sun.sample(u);
+      s.direction = on.direction, s.distance = kFar, s.pdf = on.pdf;
+      s.radiance = lamp.emitted / on.cos3;
       break;
     }
     case Kind::kEnvironment: {
@@ -526,6 +388,12 @@ bool Emitters::meets(uint32_t index, const Ray& ray, float tMax, int bounces, co
   const int seers = ray.kind == kSeenByCamera ? kSeenByCamera : kSeenBySurfaces;
   if ((lamp.visibility & seers) == 0 || (lamp.exclusive && ray.kind != kSeenByCamera)) return false;
   float pdf = 0, t = kFar;
+  const auto met = [&](const LampHit& surface) {
+    t = surface.t, pdf = surface.pdf;
+    if (!(t > ray.tMin) || !(t < tMax)) return false;
+    hit.radiance = profile(lamp, -d);
+    return true;
+  };
   switch (lamp.kind) {
     case Kind::kArea:
       t = lamp.plane.meet(ray.origin, d);
@@ -533,48 +401,17 @@ bool Emitters::meets(uint32_t index, const Ray& ray, float tMax, int bounces, co
       pdf = lamp.plane.pdf(ray.origin, d, t);
       hit.radiance = profile(lamp, -d);
       break;
-    case Kind::kFacingDisk: {
-      const Vec3f toCenter = lamp.center - ray.origin;
-      const float d2 = dot(toCenter, toCenter), along = dot(d, toCenter);
-      if (!(along > 0)) return false;
-      t = d2 / along;
-      if (!(t > ray.tMin) || !(t < tMax)) return false;
-      const Vec3f p = d * t - toCenter;
-      if (dot(p, p) > lamp.radius * lamp.radius) return false;
-      pdf = t * t * t / (std::sqrt(d2) * kPif * lamp.radius * lamp.radius);
-      hit.radiance = profile(lamp, -d);
+    case Kind::kFacingDisk:
+      if (!met(DiskLamp{lamp.center, lamp.radius}.meet(ray.origin, d))) return false;
       break;
-    }
-    case Kind::kSphere: {
-      const Vec3f toCenter = lamp.center - ray.origin;
-      const float d2 = dot(toCenter, toCenter), along = dot(d, toCenter), r2 = lamp.radius * lamp.radius;
-      const Vec3f closest = toCenter - d * along;
-      const float q = r2 - dot(closest, closest);
-      if (!(q >= 0)) return false;
-      const float root = std::sqrt(q);
-      t = d2 > r2 ? along - root : along + root;
-      if (!(t > ray.tMin) || !(t < tMax)) return false;
-      if (d2 > r2) {
-        const float sin2 = r2 / d2;
-        pdf = 1 / (2 * kPif * (sin2 / (1 + std::sqrt(1 - sin2))));
-      }
-      hit.radiance = profile(lamp, -d);
+    case Kind::kSphere:
+      if (!met(SphereLamp{lamp.center, lamp.radius}.meet(ray.origin, d))) return false;
       break;
-    }
-    case Kind::kSunCone: {
-      const Vec3f apart = d - lamp.center;  // 1 - cos = |d - c|^2 / 2, exact for narrow cones
-      if (!(0.5f * dot(apart, apart) <= lamp.oneMinusCos)) return false;
-      pdf = 1 / (2 * kPif * lamp.oneMinusCos);
-      hit.radiance = lamp.emitted;
-      break;
-    }
-    case Kind::kSunDisk: {
-      const Vec3f apart = d - lamp.center;
-      const float cosAxis = dot(d, lamp.center);
-      if (!(0.5f * dot(apart, apart) <= lamp.oneMinusCos) || !(cosAxis > 0)) return false;
-      const float cos3 = cosAxis * cosAxis * cosAxis;
-      pdf = 1 / (lamp.area * cos3);
-      hit.radiance = lamp.emitted / cos3;
+    case Kind::kSun: {
+      const Sun::Sample seen = lamp.sun.at(d);
+      if (!(seen.pdf > 0)) return false;
+      pdf = seen.pdf;
+      hit.radiance = lamp.emitted / seen.cos3;
       break;
     }
     case Kind::kEnvironment: {
@@ -590,7 +427,6 @@ bool Emitters::meets(uint32_t index, const Ray& ray, float tMax, int bounces, co
       break;
     }
     case Kind::kDeltaPoint:
-    case Kind::kDeltaSun:
       return false;
   }
   if (lamp.light != nullptr) hit.radiance *= factor(lamp, ray.origin, d, t, bounces);

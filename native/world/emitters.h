@@ -11,6 +11,7 @@
 #include "world/environment.h"
 #include "world/light_tree.h"
 #include "world/sphere_accel.h"
+#include "world/sun.h"
 
 namespace wardmis {
 
@@ -93,14 +94,14 @@ class Emitters {
                         float time = kMiddle) const;
 
  private:
-  enum class Kind : uint8_t { kArea, kFacingDisk, kSphere, kDeltaPoint, kDeltaSun, kSunCone, kSunDisk, kEnvironment };
+  enum class Kind : uint8_t { kArea, kFacingDisk, kSphere, kDeltaPoint, kSun, kEnvironment };
   struct Lamp {
     Kind kind;
-    Vec3f center{};              // or, for suns, the direction towards it
-    AreaLamp plane;              // of kArea
-    float area = 0, radius = 0;  // sun disk: of the disk at distance 1
-    float oneMinusCos = 0;       // sun: 1 - cos of the half angle
-    Rgb emitted{};               // radiance; point intensity; sun irradiance
+    Vec3f center{};    // or, for suns, the direction towards it
+    AreaLamp plane;    // of kArea
+    float radius = 0;  // of disks and spheres
+    Sun sun;           // of kSun
+    Rgb emitted{};     // radiance; point intensity; delta sun's irradiance
     // angular profile
     bool spot = false, cosine = false;
     float cosHalf = 0, blend = 0;

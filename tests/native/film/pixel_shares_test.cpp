@@ -151,7 +151,7 @@ TEST(PixelSurvey, HoldsExtremes) {
     for (; film.samples < 16; ++film.samples) {
       if (film.samples == 8) survey.half(film);
       for (size_t i = 0; i < 64; ++i) {
-        const auto v = static_cast<float>(scale * (1 + (i + film.samples) % (i < 32 ? 2 : 7)));
+        const auto v = static_cast<float>(scale * (1 + (i + film.samples) % (i < 32 ? 1 : 7)));
         film.pixels[i].add({v, 0, -v});
       }
     }

@@ -50,7 +50,7 @@ TEST(AreaLamp, SamplesHaveTheDensityThatIsTold) {
           };
           std::vector<double> as, bs;
           const auto draw = [&]() -> std::optional<Vec2<double>> {
-            const AreaLamp::Sample s = lamp.sample(from, random.square<float>());
+            const LampSample s = lamp.sample(from, random.square<float>());
             if (!(s.pdf > 0)) return std::nullopt;
             const float t = lamp.meet(from, s.direction);
             if (t > 0 && lamp.profile(-s.direction) > 0) {
@@ -103,7 +103,7 @@ TEST(AreaLamp, IsSampledWhereItsLightCanComeFrom) {
         const auto useful = [&](Vec3f from) {
           int count = 0;
           for (int i = 0; i < 1000; ++i) {
-            const AreaLamp::Sample s = lamp.sample(from, random.square<float>());
+            const LampSample s = lamp.sample(from, random.square<float>());
             count += s.pdf > 0 && lamp.profile(-s.direction) > 0;
           }
           return count;
