@@ -102,6 +102,8 @@ def seen_through(*before):
     """Half-transparent sheets over a box, a hole and nothing: each of `before` makes a material's shader by its tree."""
     made = things()
     made.render.film_transparent = True
+    # else its roulette ends paths behind the sheets, and those that are left count before a hole as they are: too little
+    made.cycles.min_transparent_bounces = 8
     bpy.data.objects["Ball"].is_holdout = True
     for i, shader in enumerate(before):
         sheet, tree, output = material("Sheet")
