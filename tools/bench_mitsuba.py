@@ -19,7 +19,7 @@ from typing import Any
 
 import blender
 import numpy as np
-from bench import DEFAULT, EQUAL, Interval, asked
+from bench import DEFAULT, EQUAL, Interval, asked, of_all_pixels
 from markdown import table
 
 SCENES = ("veach", "veach-direct", "teapot", "teapot-direct", "veach-mesh-lights")
@@ -222,18 +222,17 @@ class Row:
     efficiency: Interval | None  # 1 / (relMSE x time) of the default over Mitsuba's
     equal: Interval | None  # the same over equal counts'
     time: float  # of the default by Mitsuba's, at the same camera samples
-    error: float  # the same of the relMSE without the worst 0.1 % of the pixels
+    error: float  # the same of the error by `metric`
+    metric: str  # as the report has it
 
 
 def row(scene: str, report: dict[str, Any]) -> Row:
     of = {c["name"]: c for c in report["configurations"]}
     peer, own = of["Mitsuba"], of[DEFAULT]
-    clock = report["effort_clock"]
-    last = [{name: c["curve"][-1][name]["mean"] for name in (clock, "relmse_trimmed")} for c in (own, peer)]
+    clock, metric = report["effort_clock"], report["metric"]
+    last = [{name: c["curve"][-1][name]["mean"] for name in (clock, metric)} for c in (own, peer)]
     over, equal = Interval.of(peer["efficiency"]["ratio"]), Interval.of(of[EQUAL]["efficiency"]["ratio"])
-    return Row(
-        scene, over, equal, last[0][clock] / last[1][clock], last[0]["relmse_trimmed"] / last[1]["relmse_trimmed"]
-    )
+    return Row(scene, over, equal, last[0][clock] / last[1][clock], last[0][metric] / last[1][metric], metric)
 
 
 def measured(mi: Any, name: str, options: argparse.Namespace) -> Row:
@@ -285,6 +284,7 @@ def main() -> int:
     )
     cells = ((r.scene, str(r.efficiency), str(r.equal), f"{r.time:.2f}", f"{r.error:.2g}") for r in rows)
     print(table(headings, cells))
+    print(of_all_pixels({r.scene: r.metric for r in rows}), end="")
     return 0
 
 

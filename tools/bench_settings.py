@@ -13,7 +13,7 @@ from dataclasses import asdict, dataclass
 from statistics import geometric_mean
 
 import blender
-from bench import asked
+from bench import asked, of_all_pixels
 from markdown import table
 
 SCENES = (
@@ -65,8 +65,8 @@ class Over:
         return f"{self.ratio:.2f} [{self.low:.2f}, {self.high:.2f}]"
 
 
-def measured(scene: str, options: argparse.Namespace) -> list[Over]:
-    """Of each fixed setting, the best one first."""
+def measured(scene: str, options: argparse.Namespace) -> tuple[list[Over], str]:
+    """Of each fixed setting, the best one first; and by what metric of the report."""
     integrator = "direct" if scene.endswith("-direct") else "path"
     glb = blender.exported(scene.removesuffix("-direct"), options.out)
     print(f"bench: {scene}", file=sys.stderr, flush=True)
@@ -86,15 +86,16 @@ def measured(scene: str, options: argparse.Namespace) -> list[Over]:
     for name in FIXED:
         if ratio := of[name]:  # none where there is no noise
             found.append(Over(name, 1 / ratio["mean"], 1 / ratio["high"], 1 / ratio["low"]))
-    return sorted(found, key=lambda o: -o.ratio)
+    return sorted(found, key=lambda o: -o.ratio), report["metric"]
 
 
 def main() -> int:
     options = asked("settings", __doc__, SCENES, "scenes, studies and settings.json")
     found: dict[str, list[Over]] = {}
+    metrics: dict[str, str] = {}
     for scene in options.scenes:
         try:
-            found[scene] = measured(scene, options)
+            found[scene], metrics[scene] = measured(scene, options)
         except blender.RenderFailed as error:
             sys.exit(f"bench: {error}")
         document = {name: [asdict(o) for o in over] for name, over in found.items()}
@@ -106,6 +107,7 @@ def main() -> int:
     ]
     print(f"{options.samples} samples per pixel, {options.resolution}, {options.seeds} seeds\n")
     print(table(("scene", "best fixed setting", "error x time of the default over its", "over equal counts'"), rows, 2))
+    print(of_all_pixels(metrics), end="")
     ratios = [over[0].ratio for over in found.values() if over]
     print(f"The worst is {max(ratios):.2f}, the geometric mean {geometric_mean(ratios):.2f}.")
     if silent := [scene for scene, over in found.items() if not over]:

@@ -18,6 +18,7 @@ namespace {
 
 constexpr float kFar = 3e38f;
 constexpr float kPif = kPi<float>;
+constexpr float kLeastRadius = 1e-15f;  // of a lamp; below it is a point, since no float holds its radiance
 
 float fraction(float v) { return v - std::floor(v); }
 
@@ -92,9 +93,9 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Env
       }
       case LightType::kPoint:
       case LightType::kSpot: {
-        l.radius = light.radius;
-        l.kind = !(light.radius > 0) ? Kind::kDeltaPoint : light.facing ? Kind::kFacingDisk : Kind::kSphere;
-        if (light.radius > 0) l.emitted = light.emitted / (kPif * light.radius * light.radius);
+        l.radius = light.radius > kLeastRadius ? light.radius : 0;
+        l.kind = !(l.radius > 0) ? Kind::kDeltaPoint : light.facing ? Kind::kFacingDisk : Kind::kSphere;
+        if (l.radius > 0) l.emitted = light.emitted / (kPif * l.radius * l.radius);
         if (light.type == LightType::kSpot) {
           l.spot = true;
           l.cosine = light.cosine;

@@ -64,6 +64,24 @@ TEST(Emitters, RaysMeetWhatSamplesAimAt) {
   }
 }
 
+// Lamps so small that no float holds their radiance shine as points do.
+TEST(Emitters, TinyLampsArePoints) {
+  for (const bool facing : {false, true})
+    for (const float radius : {1e-12f, 1e-16f, 1e-19f, 1e-20f, 1e-30f}) {
+      Scene scene;
+      scene.lights = {lampOf(LightType::kPoint, {0, 0, 2})};
+      scene.lights[0].radius = radius, scene.lights[0].facing = facing, scene.lights[0].emitted = {100, 100, 100};
+      Geometry geometry(scene);
+      const std::vector<Environment> skies;
+      const Emitters emitters(scene, geometry, skies);
+      const LightView view = emitters.view({0, 0, 0}, {0, 0, 0}, 1);
+      LightChoice choice = emitters.choose(view, {0.5, 0.5f});
+      const LightSample s = emitters.sample({0, 0, 0}, choice);
+      EXPECT_NEAR(s.radiance.x / s.pdf, 25, 0.1) << radius;
+      EXPECT_EQ(s.exclusive, radius < 1e-15f);
+    }
+}
+
 // Cycles 3.4 picks lamps evenly and weighs them so against samples of surfaces, wherever ours are drawn; others by what
 // they send, as here.
 TEST(Emitters, AreCountedAsCyclesPicksThem) {
