@@ -115,13 +115,26 @@ class WholeFractions {
   Fractions<K> fractions_{};
 };
 
-// Radiance along one camera ray of a world. data, light, catcher: null where they are not wanted. taken: counts the
-// pixel's samples of each technique; may be null, too.
+// What a pixel's camera samples add to, besides their value; null: what is not wanted.
+template <size_t K>
+struct PixelSums {
+  Pixel& pixel;
+  DataPixel* data = nullptr;
+  LightPixel* light = nullptr;
+  uint32_t* taken = nullptr;  // samples of each technique
+  PilotPixel* pilot = nullptr;
+  HitMoments<K>* moments = nullptr;
+  CandidateSums<K>* candidates = nullptr;
+};
+
+// Radiance along one camera ray of a world. catcher: null where it is not wanted.
 template <uint32_t N, size_t K>
 Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& camera, uint32_t pixelKey,
-                 uint32_t sample, const PixelFractions<K>* allocated, WholeFractions<K>& whole, Pixel& pixel,
-                 DataPixel* data, LightPixel* light, CatcherSample* catcher, uint32_t* taken, PilotPixel* pilot,
-                 HitMoments<K>* moments, CandidateSums<K>* candidates, Counts& counts) {
+                 uint32_t sample, const PixelFractions<K>* allocated, WholeFractions<K>& whole, const PixelSums<K>& to,
+                 CatcherSample* catcher, Counts& counts) {
+  Pixel& pixel = to.pixel;
+  DataPixel* const data = to.data;
+  LightPixel* light = to.light;
   ++counts.cameraRays;
   const bool transparent = world.scene.film.transparent;
   const float exposure = world.scene.film.exposure;
@@ -179,13 +192,13 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
     addLight(light->color, s.colors(), seenThrough);
   const TechniqueMask mask = techniquesAt<K>(s, world.emitters.any(), world.surfaceRays);
   const PixelSurface surface{x.frame.z, x.material, x.placement};
-  if (pilot != nullptr && pilot->surface.material < 0) pilot->surface = surface, pilot->techniques = mask;
+  if (to.pilot != nullptr && to.pilot->surface.material < 0) to.pilot->surface = surface, to.pilot->techniques = mask;
 
   if (mask == 0 || !s.reflects()) return sum;
   if constexpr ((N & kNeedsLobes) != 0)
     if (world.isBeyond(ray)) return sum;
   HitPlan<K> plan;
-  const PixelSurface* const told = pilot != nullptr       ? &pilot->surface
+  const PixelSurface* const told = to.pilot != nullptr    ? &to.pilot->surface
                                    : allocated != nullptr ? &allocated->surface
                                                           : nullptr;
   const bool follows = told == nullptr || told->holds(surface);
@@ -193,7 +206,7 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
       allocated != nullptr && follows && covers<K>(allocated->fractions, mask) ? allocated->fractions : in.fractions;
   plan.index = sample;
   plan.pixelKey = pixelKey;
-  if (candidates != nullptr) {  // the pilot of `auto`: each technique alike
+  if (to.candidates != nullptr) {  // the pilot of `auto`: each technique alike
     plan.samples = kSets * std::popcount(mask);
     plan.fractions = restrict<K>({}, mask);
   } else {
@@ -213,17 +226,17 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
   Scratch<CandidateHit<K>, 1> candidateSums;  // ... nor this
   CandidateHit<K>* candidate = nullptr;
   LightSplit* const split = light != nullptr ? &lightSplit : nullptr;
-  const bool piloted = pilot != nullptr && follows;
+  const bool piloted = to.pilot != nullptr && follows;
   if (piloted || split != nullptr) {
-    if (piloted && candidates != nullptr)
+    if (piloted && to.candidates != nullptr)
       candidate = &candidateSums.make(0, [&] { return CandidateHit<K>(in.candidates.of(mask)); });
-    record.emplace(HitRecord<K>{piloted ? moments : nullptr, candidate, split});
+    record.emplace(HitRecord<K>{piloted ? to.moments : nullptr, candidate, split});
   }
   sum += estimateHit<N, K>(world, in.sampler, x, plan, counts, record ? &*record : nullptr, more) * seenThrough;
   if (split != nullptr) [[unlikely]]
     addLight(light->direct, split->direct, seenThrough * exposure);
-  if (taken != nullptr)
-    for (size_t i = 0; i < K; ++i) taken[i] += static_cast<uint32_t>(counts.samples[i] - before[i]);
+  if (to.taken != nullptr)
+    for (size_t i = 0; i < K; ++i) to.taken[i] += static_cast<uint32_t>(counts.samples[i] - before[i]);
   if constexpr ((N & kNeedsBounces) != 0) {
     const Fractions<K> n = record ? Mixture<K>(plan.fractions, plan.samples, plan.weights).n : Fractions<K>{};
     float surfaceSamples = 0;
@@ -247,7 +260,7 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
                     c.used, c.set);
     }
   }
-  if (candidate != nullptr) candidate->addTo(*candidates, in.cost);
+  if (candidate != nullptr) candidate->addTo(*to.candidates, in.cost);
   return sum;
 }
 
@@ -287,12 +300,15 @@ void renderTile(const KernelInput<K>& in, const Tile& tile, FilmBuffer& film, Pi
       Pixel& pixel = film.pixels[index];
       const PixelFractions<K>* allocated = in.perPixel != nullptr ? &in.perPixel->at(x, y) : nullptr;
       WholeFractions<K> whole;
-      CandidateSums<K>* candidates =
-          pilot != nullptr && !pilot->candidates.empty() ? &pilot->candidates[index] : nullptr;
-      HitMoments<K>* moments = pilot != nullptr && !pilot->moments.empty() ? &pilot->moments[index] : nullptr;
-      DataPixel* data = film.data.empty() ? nullptr : &film.data[index];
-      LightPixel* light = film.light.empty() ? nullptr : &film.light[index];
-      PilotPixel* pilotPixel = pilot != nullptr ? &pilot->pixels[index] : nullptr;
+      PixelSums<K> sums{pixel};
+      if (!film.data.empty()) sums.data = &film.data[index];
+      if (!film.light.empty()) sums.light = &film.light[index];
+      sums.taken = &film.sampleCounts[index * K];
+      if (pilot != nullptr) {
+        sums.pilot = &pilot->pixels[index];
+        if (!pilot->moments.empty()) sums.moments = &pilot->moments[index];
+        if (!pilot->candidates.empty()) sums.candidates = &pilot->candidates[index];
+      }
       const uint64_t raysBefore = film.rays.empty() ? 0 : counts.allRays();
       const uint32_t end = film.shares.count(index, tile.last);
       for (uint32_t s = film.shares.count(index, tile.first); s < end; ++s) {
@@ -308,32 +324,29 @@ void renderTile(const KernelInput<K>& in, const Tile& tile, FilmBuffer& film, Pi
         const Ray ray = through(offset);
         if (s == 0)
           if (const Ray central = through({0, 0}); central.tMax > 0)
-            noteFirst<N, K>(in.scene, in.camera, central, combine(key, kFirstSample), pixel, data);
+            noteFirst<N, K>(in.scene, in.camera, central, combine(key, kFirstSample), pixel, sums.data);
         if (!(ray.tMax > 0)) [[unlikely]] {
           pixel.alpha.add({1});  // black, and no hole in the picture, as Cycles has it
           pixel.add({0, 0, 0});
           continue;
         }
-        uint32_t* const taken = &film.sampleCounts[index * K];
         if (film.catchers.empty()) [[likely]] {
-          const Rgb value = cameraSample<N, K>(in, in.scene, ray, key, s, allocated, whole, pixel, data, light, nullptr,
-                                               taken, pilotPixel, moments, candidates, counts) *
-                            exposure;
+          const Rgb value =
+              cameraSample<N, K>(in, in.scene, ray, key, s, allocated, whole, sums, nullptr, counts) * exposure;
           if (counts.rare.admit(value, in.least)) pixel.add(value);
           continue;
         }
         // the same points in both worlds, so that where catchers have no shadow the quotient is 1
         Pixel again = pixel;
         CatcherSample seen;
-        const Rgb value = cameraSample<N, K>(in, in.scene, ray, key, s, allocated, whole, pixel, data, light, &seen,
-                                             taken, pilotPixel, moments, candidates, counts) *
-                          exposure;
+        const Rgb value =
+            cameraSample<N, K>(in, in.scene, ray, key, s, allocated, whole, sums, &seen, counts) * exposure;
         if (!counts.rare.admit(value, in.least)) continue;
         pixel.add(value);
         addCatchers(film.catchers[index], value, exposure, pixel.alpha[0] - again.alpha[0], seen,
                     [&](CatcherSample& alone) {
-                      return cameraSample<N, K>(in, *in.catchers, ray, key, s, allocated, whole, again, nullptr,
-                                                nullptr, &alone, nullptr, nullptr, nullptr, nullptr, counts);
+                      return cameraSample<N, K>(in, *in.catchers, ray, key, s, allocated, whole, PixelSums<K>{again},
+                                                &alone, counts);
                     });
       }
       if (!film.rays.empty()) film.rays[index] += static_cast<uint32_t>(counts.allRays() - raysBefore);
