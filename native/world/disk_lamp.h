@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A disk that faces whoever looks at it: what a point lamp with a radius is in Cycles up to 4.
+// A disk that faces whoever looks at it: Blender's point lamp with soft falloff.
 #pragma once
 
 #include <cmath>

@@ -358,9 +358,9 @@ LightSample Emitters::sample(Vec3f from, const LightChoice& choice, int bounces,
       break;
     }
     case Kind::kSun: {
-      const Sun::Sample on = lamp.sun.sample(u);
-      s.direction = on.direction, s.distance = kFar, s.pdf = on.pdf;
-      s.radiance = lamp.emitted / on.cos3;
+      const Sun::Sample sun = lamp.sun.sample(u);
+      s.direction = sun.direction, s.distance = kFar, s.pdf = sun.pdf;
+      s.radiance = lamp.emitted / sun.cos3;
       break;
     }
     case Kind::kEnvironment: {

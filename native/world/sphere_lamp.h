@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// A sphere of the same radiance everywhere: Blender's point lamp without soft falloff.
 #pragma once
 
 #include <algorithm>
