@@ -4,7 +4,9 @@
 
 import argparse
 import json
+import os
 import shutil
+import subprocess
 import sys
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -114,6 +116,20 @@ def measured(scene: str, folder: Path, options: argparse.Namespace) -> Row:
     script = ROOT / "blend" / "compare.py"
     blender.run(folder / f"{scene}.blend", "--python-exit-code", "1", "--python", script, "--", "-o", out, *words)
     return row(scene, json.loads((out / "report.json").read_text()))
+
+
+def converged(scene: str, study: Path, options: argparse.Namespace, *words: str | Path | int) -> dict[str, Any]:
+    """The report of `wardmis converge` on a scene of blend/bench_scenes.py, or on its direct light alone."""
+    glb = blender.exported(scene.removesuffix("-direct"), options.out)
+    integrator = "direct" if scene.endswith("-direct") else "path"
+    shutil.rmtree(study, ignore_errors=True)  # an earlier one would be gone on with, not measured
+    command = [os.environ["WARDMIS_BINARY"], "converge", glb, "-o", study, "--integrator", integrator, *words]
+    command += ["--seeds", options.seeds, "--max-spp", options.samples, "--resolution", options.resolution]
+    done = subprocess.run([*map(str, command)], capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        sys.exit(f"bench: {scene}: {done.stderr.strip()}")
+    report: dict[str, Any] = json.loads((study / "report.json").read_text())
+    return report
 
 
 def of_all_pixels(metrics: dict[str, str]) -> str:

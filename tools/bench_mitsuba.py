@@ -7,9 +7,6 @@ import argparse
 import importlib
 import json
 import math
-import os
-import shutil
-import subprocess
 import sys
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -19,7 +16,7 @@ from typing import Any
 
 import blender
 import numpy as np
-from bench import DEFAULT, EQUAL, Interval, asked, of_all_pixels
+from bench import DEFAULT, EQUAL, Interval, asked, converged, of_all_pixels
 from markdown import table
 
 SCENES = ("veach", "veach-direct", "teapot", "teapot-direct", "veach-mesh-lights")
@@ -236,23 +233,23 @@ def row(scene: str, report: dict[str, Any]) -> Row:
 
 
 def measured(mi: Any, name: str, options: argparse.Namespace) -> Row:
-    integrator = "direct" if name.endswith("-direct") else "path"
     glb = blender.exported(name.removesuffix("-direct"), options.out)
     print(f"bench: {name}", file=sys.stderr, flush=True)
     folder = options.out / f"{name}-mitsuba"
-    shutil.rmtree(folder, ignore_errors=True)  # an earlier one would be gone on with, not measured
     images = folder / "mitsuba"
-    images.mkdir(parents=True)
+    images.mkdir(parents=True, exist_ok=True)
     width, height = map(int, options.resolution.split("x"))
-    scene = Scene(mi, glb).loaded(SURFACES[integrator], (width, height))
-    words = [os.environ["WARDMIS_BINARY"], "converge", glb, "-o", folder / "study", "--integrator", integrator]
-    words += ["-c", f"{DEFAULT}:allocation=auto,pixels=auto", "-c", EQUAL, "--max-depth", SURFACES["path"]]
+    scene = Scene(mi, glb).loaded(SURFACES["direct" if name.endswith("-direct") else "path"], (width, height))
+    words: list[str | Path | int] = [
+        "-c",
+        f"{DEFAULT}:allocation=auto,pixels=auto",
+        "-c",
+        EQUAL,
+        "--max-depth",
+        SURFACES["path"],
+    ]
     words += ["--external", manifest(mi, scene, images, options)]
-    words += ["--seeds", options.seeds, "--max-spp", options.samples, "--resolution", options.resolution]
-    done = subprocess.run([*map(str, words)], capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        sys.exit(f"bench: {name}: {done.stderr.strip()}")
-    return row(name, json.loads((folder / "study" / "report.json").read_text()))
+    return row(name, converged(name, folder / "study", options, *words))
 
 
 def main() -> int:

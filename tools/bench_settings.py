@@ -5,15 +5,12 @@ settings."""
 
 import argparse
 import json
-import os
-import shutil
-import subprocess
 import sys
 from dataclasses import asdict, dataclass
 from statistics import geometric_mean
 
 import blender
-from bench import asked, of_all_pixels
+from bench import asked, converged, of_all_pixels
 from markdown import table
 
 SCENES = (
@@ -67,20 +64,11 @@ class Over:
 
 def measured(scene: str, options: argparse.Namespace) -> tuple[list[Over], str]:
     """Of each fixed setting, the best one first; and by what metric of the report."""
-    integrator = "direct" if scene.endswith("-direct") else "path"
-    glb = blender.exported(scene.removesuffix("-direct"), options.out)
     print(f"bench: {scene}", file=sys.stderr, flush=True)
-    study = options.out / f"{scene}-settings"
-    shutil.rmtree(study, ignore_errors=True)  # an earlier one would be gone on with, not measured
-    words = [os.environ["WARDMIS_BINARY"], "converge", glb, "-o", study, "--integrator", integrator]
-    words += ["-c", f"{DEFAULT}:allocation=auto,pixels=auto"]
+    words = ["-c", f"{DEFAULT}:allocation=auto,pixels=auto"]
     for name, settings in FIXED.items():
         words += ["-c", f"{name}:{settings}"]
-    words += ["--seeds", options.seeds, "--max-spp", options.samples, "--resolution", options.resolution]
-    done = subprocess.run([*map(str, words)], capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        sys.exit(f"bench: {scene}: {done.stderr.strip()}")
-    report = json.loads((study / "report.json").read_text())
+    report = converged(scene, options.out / f"{scene}-settings", options, *words)
     of = {c["name"]: c["efficiency"]["ratio"] for c in report["configurations"]}
     found = []
     for name in FIXED:

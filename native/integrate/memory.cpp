@@ -5,6 +5,9 @@
 
 #include <algorithm>
 
+#include "film/error_estimate.h"
+#include "film/film.h"
+#include "film/pixel_shares.h"
 #include "integrate/pilot.h"
 #include "math/error.h"
 #include "math/memory.h"

@@ -2,8 +2,6 @@
 // What a render's frame takes of memory, and whether there is so much.
 #pragma once
 
-#include "film/error_estimate.h"
-#include "film/film.h"
 #include "integrate/settings.h"
 
 namespace wardmis {

@@ -334,8 +334,9 @@ LightSample Emitters::sample(Vec3f from, const LightChoice& choice, int bounces,
   const Lamp& lamp = lamps_[index];
   if (bounces > lamp.maxBounces) return s;
   const auto on = [&](const LampSample& surface) {
+    if (!(surface.pdf > 0)) return;
     s.direction = surface.direction, s.distance = surface.distance, s.pdf = surface.pdf;
-    if (s.pdf > 0) s.radiance = profile(lamp, -s.direction);
+    s.radiance = profile(lamp, -s.direction);
   };
   switch (lamp.kind) {
     case Kind::kArea:
@@ -397,10 +398,8 @@ bool Emitters::meets(uint32_t index, const Ray& ray, float tMax, int bounces, co
   };
   switch (lamp.kind) {
     case Kind::kArea:
-      t = lamp.plane.meet(ray.origin, d);
-      if (!(t > ray.tMin) || !(t < tMax)) return false;
+      if (!met({lamp.plane.meet(ray.origin, d), 0})) return false;
       pdf = lamp.plane.pdf(ray.origin, d, t);
-      hit.radiance = profile(lamp, -d);
       break;
     case Kind::kFacingDisk:
       if (!met(DiskLamp{lamp.center, lamp.radius}.meet(ray.origin, d))) return false;

@@ -14,7 +14,7 @@ namespace wardmis {
 class Sun {
  public:
   Sun() = default;
-  // angle: of the whole cone.
+  // towards: unit; angle: of the whole cone.
   Sun(Vec3f towards, float angle, bool flat) : towards_(towards) {
     constexpr float kLeast = 1e-5f;
     if (!(angle > kLeast)) return;
@@ -32,7 +32,6 @@ class Sun {
     }
   }
 
-  Vec3f towards() const { return towards_; }  // unit
   bool delta() const { return !(oneMinusCos_ > 0); }
   float oneMinusCos() const { return oneMinusCos_; }  // of the half angle
   // How much more light it sends than the irradiance that is told of it.
