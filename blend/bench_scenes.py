@@ -17,6 +17,7 @@ sys.path[:0] = [str(HERE)]
 from parts import (  # noqa: E402
     add_area,
     add_camera,
+    add_light,
     add_mesh,
     box_mesh,
     emitter,
@@ -100,6 +101,48 @@ def door():
         box(name, center, scale, wall)
     add_area((4.5, 2.5, 3.8), (4.5, 2.5, 0), 1.0, 600)
     add_camera((-1, -5.5, 2.2), (0.2, 0.5, 0.9), 60)
+
+
+def rooms():
+    """One of sixteen rooms, with a lamp in each."""
+    begun()
+    things()
+    wall = plain("Wall", (0.7, 0.7, 0.7), 0.8)
+    for i in range(5):
+        at = 8 * i - 12
+        box(f"Across {i}", (at, 4, 2), (0.1, 16, 2), wall)
+        box(f"Along {i}", (4, at, 2), (16, 0.1, 2), wall)
+    box("Ceiling", (4, 4, 4), (16, 16, 0.1), wall)
+    box("Floor", (4, 4, -0.2), (16, 16, 0.1), wall)
+    for x in range(-7, 20, 8):
+        for y in range(-7, 20, 8):
+            add_area((x, y, 3.8), (x, y, 0), 0.6, 100)
+    add_camera((-2.5, -3.7, 2.2), (0.2, 0.5, 0.9), 65)
+
+
+def window():
+    """A room with a lamp, and a sun and a sky outside its window."""
+    begun()
+    things()
+    wall = plain("Wall", (0.7, 0.7, 0.7), 0.8)
+    for name, center, scale in (
+        ("Back", (0, 4, 2), (4, 0.1, 2)),
+        ("Left", (-4, -1, 2), (0.1, 5, 2)),
+        ("Front", (0, -6, 2), (4, 0.1, 2)),
+        ("Ceiling", (0, -1, 4), (4, 5, 0.1)),
+        ("Before the window", (4, -3.5, 2), (0.1, 2.5, 2)),
+        ("Behind it", (4, 2.5, 2), (0.1, 1.5, 2)),
+        ("Below it", (4, 0, 0.5), (0.1, 1, 0.5)),
+        ("Above it", (4, 0, 3.5), (0.1, 1, 0.5)),
+        ("Ground", (0, 0, -0.4), (200, 200, 0.1)),
+    ):
+        box(name, center, scale, wall)
+    sun = bpy.data.lights.new("Sun", "SUN")
+    sun.angle = 0.01
+    add_light(sun, (0, 0, 0), 4).rotation_euler = (0, 1.0, 0.3)
+    bpy.context.scene.world.node_tree.nodes["Background"].inputs["Strength"].default_value = 1.0
+    add_area((0, 2, 3.8), (0, 2, 0), 0.6, 60)
+    add_camera((-2, -5.5, 2.2), (0.2, 0.5, 0.9), 60)
 
 
 def area_lamps():
@@ -202,6 +245,8 @@ SCENES = {
     "teapot-direct": lambda: opened("teapot", "direct"),
     "veach-mesh-lights": veach_mesh_lights,
     "door": door,
+    "rooms": rooms,
+    "window": window,
     "area-lamps": area_lamps,
     "image-sky": image_sky,
 }

@@ -24,6 +24,8 @@ SCENES = (
     "teapot-direct",
     "veach-mesh-lights",
     "door",
+    "rooms",
+    "window",
     "area-lamps",
     "image-sky",
     "studio",

@@ -72,6 +72,7 @@ json statisticsJson(const std::string& path, const RenderSettings& settings, con
          {"cpu_seconds", {{"pilot", s.pilotCpuSeconds}, {"render", s.renderCpuSeconds}}},
          {"samples_per_pixel", film.samples},
          {"pixel_samples", pixelSamples(film, s.pixelGain)},
+         {"hidden_lights", s.hiddenLights < 1 ? json(s.hiddenLights) : json()},
          {"pilot_in_image", s.allocated ? json(s.pilotKept) : json()},
          {"pixels", film.pixels.size()},
          {"needs", describe(s.needs)},

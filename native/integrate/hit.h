@@ -109,7 +109,9 @@ class HitEstimate {
     const float matte = s.strength() > 0 ? s.diffuseStrength() / s.strength() : 1;
     bool oneSided = true;  // no light goes through from behind
     if constexpr (kGeneral) oneSided = !s.transmits();
-    return world.emitters.view(x.position, oneSided ? x.geometric : Vec3f{0, 0, 0}, matte);
+    const Vec3f facing = oneSided ? x.geometric : Vec3f{0, 0, 0};
+    return world.emitters.view(x.position, facing, matte,
+                               world.lights != nullptr ? &world.lights->at(x.position, facing) : nullptr);
   }
   static Rgb total(const Values& f) {
     Rgb all = f[0];
@@ -205,6 +207,8 @@ class HitEstimate {
     if (l.shadow) {
       ++counts_.rays[kLight];
       const Rgb left = transmittance<N, K>(world_, shadowRay(s, l));
+      if (world_.learning != nullptr) [[unlikely]]
+        world_.learning->note(view_.p, view_.n, l.entry, !isBlack(left));
       if (isBlack(left)) return;
       if constexpr (kGeneral) radiance *= left;
     }

@@ -23,6 +23,9 @@ constexpr uint32_t kLeastForPilot = 16;  // samples: the pilot of `auto` does no
 constexpr uint32_t kUsualSamples = 64;
 constexpr double kWatched = 0.5;  // seconds after which one wants to see more
 constexpr uint32_t kMostParts = 64;
+// Lights are drawn by what of them is hidden where that leaves less than this of the variance: a place in the table
+// costs as much as 2 to 5 % of a sample.
+constexpr double kHiddenPay = 0.8;
 constexpr double kPilotTime = 1.0 / 16;  // of a time limit, for the pilot of `auto`
 // What a sample of a coarse pilot costs, in samples of the image: its hits draw kSets of each technique.
 constexpr double kCoarseSample = double(kSets) / (kCoarse * kCoarse);
@@ -311,14 +314,23 @@ FilmBuffer renderWith(const BuiltScene& built, const RenderSettings& settings, S
   if (observer.started) observer.started(stats);
   SampleCost<K>& cost = setup.input.cost;
   FractionsMap<K> map;
+  std::optional<LightVisibility> lights;
+  if (stats.allocated && settings.allocation == Allocation::kAuto && built.emitters.several())
+    lights.emplace(*built.scene.camera, frame);
   const auto allocateFrom = [&](FilmBuffer& film, int side) {
     Pilot<K> pilot(film.width, film.height, settings.allocation);
+    setup.drawLights(nullptr, lights ? &*lights : nullptr);
     if (settings.costFrom == CostFrom::kRays) {
       run.until(1, &pilot);
       cost = countedCost<K>(run.counts(), settings.samplesPerHit);
     }
     run.until(pilotSpp, &pilot);
+    setup.drawLights(nullptr, nullptr);
     if (run.stopped()) return;
+    if (const double left = lights ? lights->learn() : 1; left < kHiddenPay) {
+      setup.drawLights(&*lights, nullptr);
+      stats.hiddenLights = left;
+    }
     map = {side, film.width,
            pilot.fractions(settings.allocation, settings.integrand, setup.techniques, settings.minFraction,
                            setup.input.candidates, cost)};
@@ -356,6 +368,8 @@ FilmBuffer renderWith(const BuiltScene& built, const RenderSettings& settings, S
     const double samples = settings.seconds * kCoarseSample * film.samples / stats.pilotSeconds;
     if (settings.seconds > 0 && samples < kLeastForPilot) {
       setup.input.perPixel = nullptr, stats.allocated = false;
+      setup.drawLights(nullptr, nullptr);
+      stats.hiddenLights = 1;
       stats.leftOut.emplace_back(kNoPilot);
     }
   }

@@ -37,7 +37,8 @@ struct Statistics {
   bool pilotKept = false;                   // its samples are part of the image
   std::vector<float> cost;                  // of a sample of each technique, that the allocation took into account
   float costOfHit = 0;                      // a share of a hit's own, in the same unit
-  double pixelGain = 1;  // of error x time, that unequal samples of pixels are to bring; 1: all have as many
+  double pixelGain = 1;     // of error x time, that unequal samples of pixels are to bring; 1: all have as many
+  double hiddenLights = 1;  // LightVisibility::learn(), where lights are drawn by it; 1: they are not
   std::optional<EstimatedError> error;  // the last estimate, where an error is aimed at
 };
 

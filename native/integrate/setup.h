@@ -53,6 +53,10 @@ struct RenderSetup {
   FilmBuffer film(int side = 1) const;  // an empty one, of the border's size; side: of its pixels, in the image's
   // Instead of the settings' own points.
   void drawFrom(const Sampler& sampler) { sampler_ = sampler; }
+  // Light samples tell `learning` whether they are seen, and are drawn by what `lights` knows of that; null: neither.
+  void drawLights(const LightVisibility* lights, LightVisibility* learning) {
+    world_.lights = lights, world_.learning = learning;
+  }
 
   uint32_t needs = 0, kernelNeeds = 0;
   TechniqueMask techniques = 0;  // that the scene has

@@ -6,6 +6,7 @@
 #include "integrate/interaction.h"
 #include "math/random.h"
 #include "world/emitters.h"
+#include "world/light_visibility.h"
 
 namespace wardmis {
 
@@ -21,6 +22,9 @@ struct RenderScene {
   int mostTransparent = 0;
   // Those after which other rays pass no more, and what they meet shows them its emission alone.
   int mostFollowed = 1;
+  // What is known of hidden lights, and what learns it, in a pilot; null: nothing.
+  const LightVisibility* lights = nullptr;
+  LightVisibility* learning = nullptr;
   // Whether a ray has passed more than shadow rays do.
   bool isHidden(const Ray& ray) const { return ray.path.transparent > mostTransparent; }
   // Whether it has passed as many as it may.

@@ -274,7 +274,7 @@ LightChoice Emitters::choose(const LightView& view, ChoicePoint u) const {
   LightChoice c;
   c.point = u;
   const LightTree::Choice drawn = tree_.choose(view, c.point.x);
-  c.emitter = drawn.light, c.probability = drawn.probability;
+  c.emitter = drawn.light, c.entry = drawn.entry, c.probability = drawn.probability;
   if (c.emitter < lamps_.size() && lamps_[c.emitter].kind == Kind::kEnvironment)
     environments_[lamps_[c.emitter].environment].prefetch(c.point);
   return c;
@@ -296,6 +296,7 @@ void Emitters::look(LightSample& s, Vec3f from, int bounces) const {
 LightSample Emitters::sample(Vec3f from, const LightChoice& choice, int bounces, float time) const {
   LightSample s;
   if (!(choice.probability > 0)) return s;
+  s.entry = choice.entry;
   const uint32_t index = choice.emitter;
   const Vec2f u{toCoordinate(choice.point.x), choice.point.y};
   if (index >= lamps_.size()) {

@@ -26,6 +26,7 @@ struct LightSample {
   Environment::Place sky;  // of an environment: radiance and density are still to be looked up there
   bool exclusive = false;  // no other technique meets this emitter: a delta light, or one without shadows
   bool shadow = true;      // occluders count
+  uint32_t entry = 0;      // of the tree that it was drawn from
   PrimitiveId on;          // the triangle, which is not an occluder itself
   uint8_t visibility = kSeenByAll;
 };
@@ -34,7 +35,7 @@ using LightView = LightTree::View;
 
 // An emitter that was drawn, and what is left of the random numbers.
 struct LightChoice {
-  uint32_t emitter = 0;
+  uint32_t emitter = 0, entry = 0;  // entry: of the tree
   float probability = 0;
   ChoicePoint point{};
   uint32_t cell = 0;  // of a sky's table
@@ -56,6 +57,8 @@ class Emitters {
            bool catchersAlone = false);
 
   bool any() const { return !tree_.empty(); }
+  // Whether some lights may be drawn more often than others where these are hidden.
+  bool several() const { return tree_.entries() > 1; }
   // Emitters that the surface's techniques meet too, and emitters that they cannot (delta lights, lights without
   // shadows).
   bool anyShared() const { return shared_; }
@@ -68,8 +71,10 @@ class Emitters {
 
   // A sample is made in four steps, each of which asks for the memory that the next one reads: work between them hides
   // the wait. bounces: by which the path has come to `from`; time: of the path. A choice of probability 0 is none.
-  // matte: as LightTree has it.
-  LightView view(Vec3f from, Vec3f facing, float matte) const { return tree_.from(from, facing, matte); }
+  // matte, known: as LightTree has them.
+  LightView view(Vec3f from, Vec3f facing, float matte, const LightTree::Factors* known = nullptr) const {
+    return tree_.from(from, facing, matte, known);
+  }
   LightChoice choose(const LightView& view, ChoicePoint u) const;
   void aim(LightChoice& choice) const;
   LightSample sample(Vec3f from, const LightChoice& choice, int bounces = 0, float time = kMiddle) const;

@@ -276,8 +276,9 @@ class LightTree::Builder {
 
 LightTree::LightTree(const std::vector<LightBounds>& lights) { Builder(*this, lights); }
 
-LightTree::View LightTree::from(Vec3f p, Vec3f n, float matte) const {
-  // Nothing is known of what is hidden, nor of where gloss looks: a part, of gloss a larger one, is drawn by power.
+LightTree::View LightTree::from(Vec3f p, Vec3f n, float matte, const Factors* known) const {
+  // Nothing else is known of what is hidden, nor of where gloss looks: a part, of gloss a larger one, is drawn by
+  // power.
   constexpr float kHidden = 0.2f, kElsewhere = 0.5f;
   View v;
   v.p = p, v.n = n;
@@ -294,9 +295,14 @@ LightTree::View LightTree::from(Vec3f p, Vec3f n, float matte) const {
     v.probability = power_;
     return v;
   }
-  const float known = (1 - kHidden) * (1 - kElsewhere * (1 - std::clamp(matte, 0.0f, 1.0f))),
-              byImportance = known / sum, byPower = (1 - known) / power;
+  const float sure = (1 - kHidden) * (1 - kElsewhere * (1 - std::clamp(matte, 0.0f, 1.0f))), byImportance = sure / sum,
+              byPower = (1 - sure) / power;
   for (size_t i = 0; i < lanes; ++i) v.probability[i] = here[i] > 0 ? here[i] * byImportance + power_[i] * byPower : 0;
+  if (known != nullptr) {
+    float all = 0;
+    for (size_t i = 0; i < lanes; ++i) all += v.probability[i] *= (*known)[i];
+    for (size_t i = 0; i < lanes; ++i) v.probability[i] *= 1 / all;
+  }
   return v;
 }
 
@@ -330,6 +336,7 @@ size_t draw(const float* probability, size_t count, double& u) {
 
 LightTree::Choice LightTree::choose(const View& view, double& u) const {
   size_t at = draw(view.probability.data(), entries_, u);
+  const auto entry = static_cast<uint32_t>(at);
   float probability = view.probability[at];
   uint32_t child = entry_[at];
   while ((child & kGroupFlag) != 0) {
@@ -340,7 +347,7 @@ LightTree::Choice LightTree::choose(const View& view, double& u) const {
     probability *= share[at];
     child = group.child[at];
   }
-  return {child, probability};
+  return {child, entry, probability};
 }
 
 float LightTree::probability(const View& view, uint32_t light) const {

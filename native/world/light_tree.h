@@ -47,6 +47,7 @@ class LightTree {
   explicit LightTree(const std::vector<LightBounds>& lights);
 
   bool empty() const { return entries_ == 0; }
+  uint32_t entries() const { return entries_; }
 
   // The lights as a point sees them, who faces n (of length 0: any way).
   static constexpr size_t kMostEntries = 16;
@@ -54,11 +55,13 @@ class LightTree {
     Vec3f p{0, 0, 0}, n{0, 0, 0};
     std::array<float, kMostEntries> probability;  // of each entry
   };
-  // matte: which part of the light the surface there sends to all sides alike, 0 to 1.
-  View from(Vec3f p, Vec3f n, float matte) const;
+  using Factors = std::array<float, kMostEntries>;  // of each entry's probability, above 0
+  // matte: which part of the light the surface there sends to all sides alike, 0 to 1; known: null, or what else is
+  // known there.
+  View from(Vec3f p, Vec3f n, float matte, const Factors* known = nullptr) const;
 
   struct Choice {
-    uint32_t light = 0;
+    uint32_t light = 0, entry = 0;
     float probability = 0;  // 0: none
   };
   // u in [0, 1) is replaced by what is left of it.

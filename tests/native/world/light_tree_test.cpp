@@ -38,8 +38,10 @@ TEST(LightTree, ProbabilitiesAreThoseOfWhatIsDrawn) {
     const LightTree tree(all);
     for (int point = 0; point < 20; ++point) {
       const Vec3f n = point % 3 == 0 ? Vec3f{0, 0, 0} : direction(random);
-      const LightTree::View view =
-          tree.from(inBox(random, point % 2 == 0 ? 12.0f : 100.0f), n, static_cast<float>(point % 4) / 3);
+      LightTree::Factors known;
+      for (float& factor : known) factor = 0.05f + 0.95f * static_cast<float>(random.square().x);
+      const LightTree::View view = tree.from(inBox(random, point % 2 == 0 ? 12.0f : 100.0f), n,
+                                             static_cast<float>(point % 4) / 3, point % 5 < 2 ? &known : nullptr);
       double sum = 0;
       for (uint32_t i = 0; i < all.size(); ++i) {
         const float p = tree.probability(view, i);
