@@ -60,8 +60,8 @@ double LightVisibility::learn() {
       drawn += all, seen += its, kept += all * factor, square += its / factor;
     }
     if (!(drawn > 0)) continue;
-    // entries are drawn with p_i, seen with v_i, then drawn with p_i f_i / sum p f: E = sum p v, E[X^2] = sum p v before
-    // and sum p f sum p v / f after
+    // entries are drawn with p_i, seen with v_i, then drawn with p_i f_i / sum p f: E = sum p v, E[X^2] = sum p v
+    // before and sum p f sum p v / f after
     const double mean = seen / drawn;
     before += drawn * (mean - mean * mean);
     after += drawn * (kept / drawn * (square / drawn) - mean * mean);

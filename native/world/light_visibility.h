@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How often the lights of each entry of the light tree are seen from about a place, learned in a pilot, so that light
-// samples are not spent on lamps behind a wall (after Vevoda, Kondapaneni and Krivanek 2018, "Bayesian online regression
-// for adaptive direct illumination sampling", whose cells learn more than that). Places are cells of space and of the
-// surface's direction, as wide as some pixels, in a hash table. What is learned is a number for each cell, so that
-// nothing is biased.
+// samples are not spent on lamps behind a wall (after Vevoda, Kondapaneni and Krivanek 2018, "Bayesian online
+// regression for adaptive direct illumination sampling", whose cells learn more than that). Places are cells of space
+// and of the surface's direction, as wide as some pixels, in a hash table. What is learned is a number for each cell,
+// so that nothing is biased.
 #pragma once
 
 #include <array>
