@@ -84,12 +84,18 @@ def veach_mesh_lights():
         add_mesh("Light", np.multiply(vertices, radius) + center, faces, material)
 
 
-def door():
-    """A room without a lamp, lit through the door of another."""
+def walled(*boxes):
+    """The things among walls: each a box, by its name, centre and half size."""
     begun()
     things()
     wall = plain("Wall", (0.7, 0.7, 0.7), 0.8)
-    for name, center, scale in (
+    for name, center, scale in boxes:
+        box(name, center, scale, wall)
+
+
+def door():
+    """A room without a lamp, lit through the door of another."""
+    walled(
         ("Back", (0, 4, 2), (6, 0.1, 2)),
         ("Left", (-6, 0, 2), (0.1, 6, 2)),
         ("Front", (0, -6, 2), (6, 0.1, 2)),
@@ -97,23 +103,20 @@ def door():
         ("Right, before the door", (3, -2.75, 2), (0.1, 3.25, 2)),
         ("Right, behind it", (3, 2.75, 2), (0.1, 1.25, 2)),
         ("Right of the other", (6, 0, 2), (0.1, 6, 2)),
-    ):
-        box(name, center, scale, wall)
+    )
     add_area((4.5, 2.5, 3.8), (4.5, 2.5, 0), 1.0, 600)
     add_camera((-1, -5.5, 2.2), (0.2, 0.5, 0.9), 60)
 
 
 def rooms():
     """One of sixteen rooms, with a lamp in each."""
-    begun()
-    things()
-    wall = plain("Wall", (0.7, 0.7, 0.7), 0.8)
-    for i in range(5):
-        at = 8 * i - 12
-        box(f"Across {i}", (at, 4, 2), (0.1, 16, 2), wall)
-        box(f"Along {i}", (4, at, 2), (16, 0.1, 2), wall)
-    box("Ceiling", (4, 4, 4), (16, 16, 0.1), wall)
-    box("Floor", (4, 4, -0.2), (16, 16, 0.1), wall)
+    at = [8 * i - 12 for i in range(5)]
+    walled(
+        *((f"Across {x}", (x, 4, 2), (0.1, 16, 2)) for x in at),
+        *((f"Along {y}", (4, y, 2), (16, 0.1, 2)) for y in at),
+        ("Ceiling", (4, 4, 4), (16, 16, 0.1)),
+        ("Floor", (4, 4, -0.2), (16, 16, 0.1)),
+    )
     for x in range(-7, 20, 8):
         for y in range(-7, 20, 8):
             add_area((x, y, 3.8), (x, y, 0), 0.6, 100)
@@ -122,10 +125,7 @@ def rooms():
 
 def window():
     """A room with a lamp, and a sun and a sky outside its window."""
-    begun()
-    things()
-    wall = plain("Wall", (0.7, 0.7, 0.7), 0.8)
-    for name, center, scale in (
+    walled(
         ("Back", (0, 4, 2), (4, 0.1, 2)),
         ("Left", (-4, -1, 2), (0.1, 5, 2)),
         ("Front", (0, -6, 2), (4, 0.1, 2)),
@@ -135,8 +135,7 @@ def window():
         ("Below it", (4, 0, 0.5), (0.1, 1, 0.5)),
         ("Above it", (4, 0, 3.5), (0.1, 1, 0.5)),
         ("Ground", (0, 0, -0.4), (200, 200, 0.1)),
-    ):
-        box(name, center, scale, wall)
+    )
     sun = bpy.data.lights.new("Sun", "SUN")
     sun.angle = 0.01
     add_light(sun, (0, 0, 0), 4).rotation_euler = (0, 1.0, 0.3)
