@@ -173,6 +173,8 @@ def main() -> int:
     print(f"{rows[0].cycles}; {options.samples} samples per pixel, {options.resolution}, {options.seeds} seeds\n")
     print(table(HEADINGS, (r.cells() for r in rows)))
     print(of_all_pixels({r.scene: r.metric for r in rows}), end="")
+    if short := [r.scene for r in rows if r.clock == "wall"]:
+        print(f"By the wall clock, where Cycles' renders are too short to tell their processor time: {', '.join(short)}.")
     return 0
 
 
