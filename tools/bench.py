@@ -174,7 +174,7 @@ def main() -> int:
     print(table(HEADINGS, (r.cells() for r in rows)))
     print(of_all_pixels({r.scene: r.metric for r in rows}), end="")
     if short := [r.scene for r in rows if r.clock == "wall"]:
-        print(f"By the wall clock, where Cycles' renders are too short to tell their processor time: {', '.join(short)}.")
+        print(f"By the wall clock, since Cycles' renders are too short for their processor time: {', '.join(short)}.")
     return 0
 
 
