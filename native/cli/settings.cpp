@@ -178,8 +178,12 @@ nlohmann::json toJson(const RenderSettings& s) {
 void useResolution(Scene& scene, const std::string& text) {
   int w = 0, h = 0;
   char rest = 0;
-  if (std::sscanf(text.c_str(), "%dx%d%c", &w, &h, &rest) != 2 || w < 1 || h < 1 || w > 65536 || h > 65536)
+  constexpr int kMost = 65536;
+  if (std::sscanf(text.c_str(), "%dx%d%c", &w, &h, &rest) != 2 || w < 1 || h < 1)
     throw Error(ExitCode::kUsage, fmt::format("--resolution '{}'", text), "give WIDTHxHEIGHT, for example 1920x1080");
+  if (w > kMost || h > kMost)
+    throw Error(ExitCode::kUsage, fmt::format("--resolution '{}' is too large", text),
+                fmt::format("give at most {} pixels a side", kMost));
   Film& f = scene.film;
   // panoramas but those with a sensor show all of their angles in any frame
   const bool fitted =

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "film/pixel_shares.h"
@@ -123,13 +124,15 @@ struct FilmBuffer {
     const auto channel = [&](size_t i) { return static_cast<float>((p.sum[i] - k.light[i] + sky * k.sky[i]) / n); };
     return {channel(0), channel(1), channel(2), transparent ? static_cast<float>(shown) : 1.0f};
   }
-  // Variance of the mean, from the samples as if they were independent; 0 with fewer than two samples.
+  // Variance of the mean, from the samples as if they were independent; 0 with fewer than two samples, and no more than
+  // a float holds.
   Rgb variance(const Pixel& p) const {
     const double n = count(p);
     if (n < 2) return {0, 0, 0};
     const auto one = [&](size_t i) {
       const double mean = p.sum[i] / n;
-      return static_cast<float>(std::max(0.0, p.squares[i] / n - mean * mean) / (n - 1));
+      constexpr double kMost = std::numeric_limits<float>::max();
+      return static_cast<float>(std::clamp((p.squares[i] / n - mean * mean) / (n - 1), 0.0, kMost));
     };
     return {one(0), one(1), one(2)};
   }

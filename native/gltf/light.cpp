@@ -40,7 +40,8 @@ std::optional<Light> readLight(const Json& json, const Affine& toWorld, Material
         light.sizeY = xy[1];
       }
       const float area = light.sizeX * light.sizeY * length(cross(toWorld.x, toWorld.y));
-      if (!(light.sizeX > 0 && light.sizeY > 0 && area > 0 && area <= FLT_MAX))
+      if (area > FLT_MAX) json.fail("its area is beyond what is counted with", "make the light or its object smaller");
+      if (!(light.sizeX > 0 && light.sizeY > 0 && area > 0))
         json.fail("its area is not positive", "give the light and its object a size and a scale above 0");
       light.spread = json.numberOr("spread", kPi<float>, 0, 3.1416f);
       if (light.spread == 0) json.at("spread").failExpected("an angle above 0");

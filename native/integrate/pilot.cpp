@@ -3,6 +3,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <bit>
 #include <map>
 
 namespace wardmis {
@@ -10,7 +11,7 @@ namespace wardmis {
 template <size_t K>
 std::vector<PixelFractions<K>> Pilot<K>::fractions(Allocation rule, Integrand integrand, TechniqueMask available,
                                                    float minimum, const CandidateLists<K>& lists,
-                                                   const SampleCost<K>& cost) const {
+                                                   const SampleCost<K>& cost, int samplesPerHit) const {
   std::vector<PixelFractions<K>> result(pixels.size());
   std::map<std::pair<int, uint32_t>, GainScatter<K>> surfaces;  // by material and placement
   for (size_t i = 0; i < candidates.size(); ++i)
@@ -18,11 +19,15 @@ std::vector<PixelFractions<K>> Pilot<K>::fractions(Allocation rule, Integrand in
   tbb::parallel_for(0, height, [&](int y) {
     for (int x = 0; x < width; ++x) {
       const TechniqueMask mask = available & pixels[index(x, y)].techniques;
-      auto& [surface, a] = result[index(x, y)];
+      auto& [surface, a, samples] = result[index(x, y)];
       surface = pixels[index(x, y)].surface;
+      samples = samplesPerHit;
       if (rule == Allocation::kAuto) {
-        a = chooseCandidate(smoothed(candidates, x, y), surfaces.at({surface.material, surface.placement}),
-                            lists.of(mask), cost);
+        const CandidateSums<K> sums = smoothed(candidates, x, y);
+        const GainScatter<K>& all = surfaces.at({surface.material, surface.placement});
+        a = chooseCandidate(sums, all, lists.of(mask), cost);
+        const int few = std::max(2, std::popcount(mask));  // one of each technique: counts that vary are noise, too
+        if (samples > few && suffice(few, sums, all)) samples = few, a = restrict<K>({}, mask);
         continue;
       }
       const HitMoments<K> m = smoothed(moments, x, y);

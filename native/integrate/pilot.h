@@ -32,6 +32,7 @@ template <size_t K>
 struct PixelFractions {
   PixelSurface surface;
   Fractions<K> fractions{};
+  int samples = 0;  // at a hit
 };
 
 // The fractions of an image, one set for each square of `side` x `side` pixels.
@@ -74,9 +75,11 @@ struct Pilot {
     return sum;
   }
 
-  // Fractions of each pixel, of the techniques that the scene has (`available`).
+  // Fractions of each pixel, of the techniques that the scene has (`available`), and its samples at a hit: as many as
+  // are asked for, of `auto` fewer where these suffice.
   std::vector<PixelFractions<K>> fractions(Allocation rule, Integrand integrand, TechniqueMask available, float minimum,
-                                           const CandidateLists<K>& lists, const SampleCost<K>& cost) const;
+                                           const CandidateLists<K>& lists, const SampleCost<K>& cost,
+                                           int samplesPerHit) const;
 
  private:
   size_t index(int x, int y) const {

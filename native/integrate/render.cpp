@@ -333,7 +333,7 @@ FilmBuffer renderWith(const BuiltScene& built, const RenderSettings& settings, S
     }
     map = {side, film.width,
            pilot.fractions(settings.allocation, settings.integrand, setup.techniques, settings.minFraction,
-                           setup.input.candidates, cost)};
+                           setup.input.candidates, cost, settings.samplesPerHit)};
     setup.input.perPixel = &map;
   };
   const auto pilotDone = [&] {

@@ -202,15 +202,16 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
                                    : allocated != nullptr ? &allocated->surface
                                                           : nullptr;
   const bool follows = told == nullptr || told->holds(surface);
-  const Fractions<K>& shares =
-      allocated != nullptr && follows && covers<K>(allocated->fractions, mask) ? allocated->fractions : in.fractions;
+  const PixelFractions<K>* const own =
+      allocated != nullptr && follows && covers<K>(allocated->fractions, mask) ? allocated : nullptr;
+  const Fractions<K>& shares = own != nullptr ? own->fractions : in.fractions;
   plan.index = sample;
   plan.pixelKey = pixelKey;
   if (to.candidates != nullptr) {  // the pilot of `auto`: each technique alike
     plan.samples = kSets * std::popcount(mask);
     plan.fractions = restrict<K>({}, mask);
   } else {
-    plan.samples = in.samplesPerHit;
+    plan.samples = own != nullptr ? own->samples : in.samplesPerHit;
     if (in.rule == Allocation::kAlbedo) [[unlikely]]
       plan.fractions =
           wholeCounts<K>(restrict<K>(albedoFractions<K>(s), mask), plan.samples, std::bit_floor(plan.index));

@@ -89,10 +89,22 @@ Fractions<K> chooseCandidate(const CandidateSums<K>& sums, const GainScatter<K>&
   return list.at(best);
 }
 
+template <size_t K>
+bool suffice(int samples, const CandidateSums<K>& sums, const GainScatter<K>& surface) {
+  constexpr double kScatter = 0.005, kSurfaceScatter = 0.1;
+  const auto isEven = [&](double within, double integral, double hits, double scatter) {
+    const double mean = integral / hits;
+    return mean > 0 && within / hits <= samples * scatter * scatter * mean * mean;
+  };
+  return sums.hits >= kLeastHits && isEven(double(sums.within[0]), double(sums.integral), double(sums.hits), kScatter) &&
+         isEven(surface.within, surface.integral, surface.hits, kSurfaceScatter);
+}
+
 #define WARDMIS_INSTANTIATE(K)                                                                                      \
   template class CandidateLists<K>;                                                                                 \
   template Fractions<K> chooseCandidate<K>(const CandidateSums<K>&, const GainScatter<K>&, const CandidateList<K>&, \
-                                           const SampleCost<K>&);
+                                           const SampleCost<K>&);                                                   \
+  template bool suffice<K>(int, const CandidateSums<K>&, const GainScatter<K>&);
 WARDMIS_TECHNIQUE_COUNTS(WARDMIS_INSTANTIATE)
 
 }  // namespace wardmis

@@ -72,6 +72,7 @@ class Usage(CommandTest):
             ((*render, "--threads", "-1"), "--threads"),
             ((*render, "--resolution", "48"), "WIDTHxHEIGHT"),
             ((*render, "--resolution", "0x10"), "WIDTHxHEIGHT"),
+            ((*render, "--resolution", "1000000x10"), "at most 65536 pixels"),
             ((*render, "--passes", "combined,beauty"), "beauty"),
             ((*render, "--passes", "combined=Beauty"), "cannot be a name"),
             ((*render, "--passes", "combined,diffuse-direct=Combined"), "two passes are called 'Combined'"),

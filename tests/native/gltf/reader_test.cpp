@@ -729,6 +729,7 @@ TEST(Glb, RefusesHostileScenes) {
       {"lights[0] 'L' .radius: expected a number >= 0, found -1", light({{"name", "L"}, {"type", "point"}, {"intensity", 1}, {"radius", -1}})},
       {"lights[0].maxBounces: expected a whole number >= 0", light({{"type", "point"}, {"intensity", 1}, {"maxBounces", -1}})},
       {"lights[0]: its area is not positive", light({{"type", "area"}, {"radiance", 1}, {"size", {0, 1}}})},
+      {"lights[0]: its area is beyond", light({{"type", "area"}, {"radiance", 1}, {"size", {1e30, 1e30}}})},
       {"lights[0]: its power is not a number", light({{"type", "sun"}, {"irradiance", 1e38}, {"color", {1e38, 1, 1}}})},
       {"light: refers to lights[4]", [](GlbBuilder& b) { b.root["nodes"][0]["extensions"]["WARDMIS_scene"]["light"] = 4; }},
       {"camera: nodes[0] has no camera", extension({{"camera", 0}})},

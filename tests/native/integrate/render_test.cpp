@@ -572,6 +572,36 @@ TEST(Render, AutoKeepsSobolsPointsEven) {
 
 // The pilot of `auto` is no part of the image and has one pixel for 2 x 2 of it; what it draws is counted. Others' is
 // part of it. With few samples there is none, and counts are equal.
+// A smooth mirror of an even sky: two samples at a hit in place of six, and the same light, exactly known: all of the sky
+// but for what the lobe loses.
+TEST(Render, AutoTakesFewSamplesWhereTheyAllTellTheSame) {
+  Scene scene;
+  scene.materials = {ward({0, 0, 0}, {0.5f, 0.5f, 0.5f}, 1e-3f, WardVariant::kWardGmd),
+                     ward({0.5f, 0.5f, 0.5f}, {0, 0, 0}, 0.1f, WardVariant::kWardGmd)};
+  addPlane(scene, 100, 0);
+  lookFrom(scene, 0.5f, 1, 16);
+  worldOf(scene).radiance = {1, 1, 1};
+  scene.lights.push_back({});  // where the mirror does not show it
+  scene.lights[0].toWorld.t = {0, 4, 2}, scene.lights[0].radius = 2, scene.lights[0].emitted = {200, 200, 200};
+  const auto samplesOf = [](const FilmBuffer& film) {
+    return double(std::accumulate(film.sampleCounts.begin(), film.sampleCounts.end(), uint64_t{0})) /
+           double(film.pixels.size() * film.samples);
+  };
+  RenderSettings s = quick();
+  s.spp = 32, s.allocation = Allocation::kEqual, s.pixels = PixelSamples::kEven;
+  const FilmBuffer equal = renderScene(scene, s);
+  s.allocation = Allocation::kAuto;
+  const FilmBuffer mirror = renderScene(scene, s);
+  EXPECT_EQ(samplesOf(equal), 6);
+  EXPECT_EQ(samplesOf(mirror), 2);
+  EXPECT_NEAR(measure(mirror).mean / measure(equal).mean, 1, 1e-3);
+  s.samplesPerHit = 1;  // never more than are asked for
+  EXPECT_EQ(samplesOf(renderScene(scene, s)), 1);
+  s.samplesPerHit = 6;
+  scene.meshes[0].parts[0].primitives[0].material = 1;  // a diffuse floor wants all of them
+  EXPECT_EQ(samplesOf(renderScene(scene, s)), 6);
+}
+
 TEST(Render, APilotApartIsCounted) {
   const auto ran = [](Allocation rule, SamplerType sampler, uint32_t spp, uint32_t pilot) {
     RenderSettings s = quick();

@@ -149,6 +149,37 @@ TEST(Candidates, AGainHasTheScatterOfItsSurface) {
   EXPECT_EQ(chooseCandidate<3>(here, rare, all, {1, 1, 1}), all.at(0));
 }
 
+// Few samples do where a hit's all tell the same, as before a mirror, however much hits differ from each other; not
+// where one of them may miss, nor where the rest of the surface has what is rare.
+TEST(Candidates, FewSamplesSufficeWhereAllTellTheSame) {
+  const Fractions<3> n{2, 2, 2};
+  // miss: what each technique's second sample finds less
+  const auto add = [&](CandidateSums<3>& sums, float f, float miss) {
+    CandidateHit<3> hit(all);
+    for (int set = 0; set < kSets; ++set)
+      for (int technique = 0; technique < 3; ++technique)
+        hit.add(set == 0 ? f : f - miss, {1, 1, 1}, n, Techniques<3>::kAll, set);
+    hit.addTo(sums, {0, {1, 1, 1}});
+  };
+  CandidateSums<3> mirror, few, soft, dark;
+  for (int h = 0; h < 100; ++h) {
+    const float f = h % 2 == 0 ? 1.0f : 1.2f;
+    add(mirror, f, 0), add(soft, f, 0.1f), add(dark, 0, 0);
+    if (h < 4) add(few, f, 0);
+  }
+  const auto surfaceOf = [](const CandidateSums<3>& sums) {
+    GainScatter<3> surface;
+    return surface += sums;
+  };
+  EXPECT_TRUE(suffice(2, mirror, surfaceOf(mirror)));
+  EXPECT_FALSE(suffice(2, soft, surfaceOf(soft)));
+  EXPECT_FALSE(suffice(2, few, surfaceOf(few)));
+  EXPECT_FALSE(suffice(2, dark, surfaceOf(dark)));
+  CandidateSums<3> elsewhere = mirror;
+  add(elsewhere, 1000, 500);
+  EXPECT_FALSE(suffice(2, mirror, surfaceOf(elsewhere)));
+}
+
 // A slit far away sees the edge of a light under 1e-25: the square of that is no float, and a single NaN among the sums
 // was all that the surface said.
 TEST(Candidates, HitsBeyondFloatDoNotSpoilTheOthers) {
