@@ -148,10 +148,10 @@ int run(Options& o) {
   observer.stop = &stopRequest;
   observer.started = [&](const Statistics&) {
     if ((st.needs & (kNeedsEnvironment | kNeedsLightSampling)) == 0)
-      scene.notes.emplace_back(scene.lights.empty()
-                                   ? "nothing in the scene gives light, so that the image is black; add a light or a world"
-                                   : "the scene's lights are so weak or so small that none is left of them, so that the "
-                                     "image is black; make them or the whole scene larger");
+      scene.notes.emplace_back(
+          scene.lights.empty() ? "nothing in the scene gives light, so that the image is black; add a light or a world"
+                               : "the scene's lights are so weak or so small that none is left of them, so that the "
+                                 "image is black; make them or the whole scene larger");
     json passes = json::array();
     for (const PassInfo& p : choosePasses(o.passes, st.techniques, st.techniqueNames))
       passes.push_back({{"name", p.name}, {"channels", p.channels}});

@@ -96,7 +96,8 @@ bool suffice(int samples, const CandidateSums<K>& sums, const GainScatter<K>& su
     const double mean = integral / hits;
     return mean > 0 && within / hits <= samples * scatter * scatter * mean * mean;
   };
-  return sums.hits >= kLeastHits && isEven(double(sums.within[0]), double(sums.integral), double(sums.hits), kScatter) &&
+  return sums.hits >= kLeastHits &&
+         isEven(double(sums.within[0]), double(sums.integral), double(sums.hits), kScatter) &&
          isEven(surface.within, surface.integral, surface.hits, kSurfaceScatter);
 }
 

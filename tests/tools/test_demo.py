@@ -92,11 +92,13 @@ class Table(unittest.TestCase):
 
     def test_verdict_is_what_more_than_chance_speaks_for(self):
         def said(error, seconds):
-            other = table.Row("teapot", "auto", seconds, 0.5, 64, 1, 1, error, error)
+            other = table.Row("teapot", "auto", seconds, 0.5, 64, 1, 1, 1, error)
             return table.verdict([self.rows[0], other, self.rows[1]])
 
-        self.assertRegex(said(0.0123 / 2, 3.25), "^teapot: use auto. Error times time, equal being 1: auto 0.50.$")
-        self.assertRegex(said(0.0123, 3.25 * 0.9), "^teapot: use equal. .*: auto 0.90; .* none is better by more than the 25% ")
+        self.assertRegex(said(0.01 / 2, 3.25), "^teapot: use auto. Error times time, equal being 1: auto 0.50.$")
+        self.assertRegex(
+            said(0.01, 3.25 * 0.9), "^teapot: use equal. .*: auto 0.90; .* none is better by more than the 25% "
+        )
 
     def test_verdict_is_of_allocations_alone(self):
         """Cycles has an error where it shows the same materials."""

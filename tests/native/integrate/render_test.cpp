@@ -570,10 +570,7 @@ TEST(Render, AutoKeepsSobolsPointsEven) {
   EXPECT_LT(ratio(0.6f, 1.3f), 1.05);
 }
 
-// The pilot of `auto` is no part of the image and has one pixel for 2 x 2 of it; what it draws is counted. Others' is
-// part of it. With few samples there is none, and counts are equal.
-// A smooth mirror of an even sky: two samples at a hit in place of six, and the same light, exactly known: all of the sky
-// but for what the lobe loses.
+// A smooth mirror of an even sky: two samples at a hit in place of six, and the same light.
 TEST(Render, AutoTakesFewSamplesWhereTheyAllTellTheSame) {
   Scene scene;
   scene.materials = {ward({0, 0, 0}, {0.5f, 0.5f, 0.5f}, 1e-3f, WardVariant::kWardGmd),
@@ -602,6 +599,8 @@ TEST(Render, AutoTakesFewSamplesWhereTheyAllTellTheSame) {
   EXPECT_EQ(samplesOf(renderScene(scene, s)), 6);
 }
 
+// The pilot of `auto` is no part of the image and has one pixel for 2 x 2 of it; what it draws is counted. Others' is
+// part of it. With few samples there is none, and counts are equal.
 TEST(Render, APilotApartIsCounted) {
   const auto ran = [](Allocation rule, SamplerType sampler, uint32_t spp, uint32_t pilot) {
     RenderSettings s = quick();
