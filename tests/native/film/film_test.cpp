@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "statistics.h"
 
 namespace wardmis {
@@ -68,6 +70,15 @@ TEST(FilmBuffer, PixelsAreDistinct) {
     for (int x = 0; x < 4; ++x) film.at(x, y).alpha.add({double(10 * y + x)});
   EXPECT_EQ(film.at(3, 2).alpha[0], 23);
   EXPECT_EQ(film.pixels[4].alpha[0], 10);  // rows one after the other, the bottom one first
+}
+
+// The squares of light that a float just holds are no floats; a pass is to be finite.
+TEST(FilmBuffer, VarianceIsFinite) {
+  FilmBuffer film(1, 1);
+  film.samples = 2;
+  film.at(0, 0).add({1e38f, 0, 1});
+  film.at(0, 0).add({-1e38f, 0, 1});
+  EXPECT_EQ(film.variance(film.at(0, 0)), (Rgb{std::numeric_limits<float>::max(), 0, 0}));
 }
 
 }  // namespace
