@@ -13,7 +13,7 @@ std::vector<PixelFractions<K>> Pilot<K>::fractions(Allocation rule, Integrand in
                                                    float minimum, const CandidateLists<K>& lists,
                                                    const SampleCost<K>& cost, int samplesPerHit) const {
   std::vector<PixelFractions<K>> result(pixels.size());
-  std::map<std::pair<int, uint32_t>, GainScatter<K>> surfaces;  // by material and placement
+  std::map<std::pair<int, uint32_t>, SurfaceScatter<K>> surfaces;  // by material and placement
   for (size_t i = 0; i < candidates.size(); ++i)
     surfaces[{pixels[i].surface.material, pixels[i].surface.placement}] += candidates[i];
   tbb::parallel_for(0, height, [&](int y) {
@@ -24,7 +24,7 @@ std::vector<PixelFractions<K>> Pilot<K>::fractions(Allocation rule, Integrand in
       samples = samplesPerHit;
       if (rule == Allocation::kAuto) {
         const CandidateSums<K> sums = smoothed(candidates, x, y);
-        const GainScatter<K>& all = surfaces.at({surface.material, surface.placement});
+        const SurfaceScatter<K>& all = surfaces.at({surface.material, surface.placement});
         a = chooseCandidate(sums, all, lists.of(mask), cost);
         const int few = std::max(2, std::popcount(mask));  // one of each technique: counts that vary are noise, too
         if (samples > few && suffice(few, sums, all)) samples = few, a = restrict<K>({}, mask);

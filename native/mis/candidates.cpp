@@ -64,8 +64,8 @@ CandidateLists<K>::CandidateLists(int samplesPerHit) {
 }
 
 template <size_t K>
-Fractions<K> chooseCandidate(const CandidateSums<K>& sums, const GainScatter<K>& surface, const CandidateList<K>& list,
-                             const SampleCost<K>& cost) {
+Fractions<K> chooseCandidate(const CandidateSums<K>& sums, const SurfaceScatter<K>& surface,
+                             const CandidateList<K>& list, const SampleCost<K>& cost) {
   constexpr float kSigmas = 2;  // standard errors of the gain
   constexpr double kSurfaceHits = 16;
   if (!(sums.hits >= kLeastHits)) return list.at(0);
@@ -90,7 +90,7 @@ Fractions<K> chooseCandidate(const CandidateSums<K>& sums, const GainScatter<K>&
 }
 
 template <size_t K>
-bool suffice(int samples, const CandidateSums<K>& sums, const GainScatter<K>& surface) {
+bool suffice(int samples, const CandidateSums<K>& sums, const SurfaceScatter<K>& surface) {
   constexpr double kScatter = 0.005, kSurfaceScatter = 0.1;
   const auto isEven = [&](double within, double integral, double hits, double scatter) {
     const double mean = integral / hits;
@@ -101,11 +101,11 @@ bool suffice(int samples, const CandidateSums<K>& sums, const GainScatter<K>& su
          isEven(surface.within, surface.integral, surface.hits, kSurfaceScatter);
 }
 
-#define WARDMIS_INSTANTIATE(K)                                                                                      \
-  template class CandidateLists<K>;                                                                                 \
-  template Fractions<K> chooseCandidate<K>(const CandidateSums<K>&, const GainScatter<K>&, const CandidateList<K>&, \
-                                           const SampleCost<K>&);                                                   \
-  template bool suffice<K>(int, const CandidateSums<K>&, const GainScatter<K>&);
+#define WARDMIS_INSTANTIATE(K)                                                                                         \
+  template class CandidateLists<K>;                                                                                    \
+  template Fractions<K> chooseCandidate<K>(const CandidateSums<K>&, const SurfaceScatter<K>&, const CandidateList<K>&, \
+                                           const SampleCost<K>&);                                                      \
+  template bool suffice<K>(int, const CandidateSums<K>&, const SurfaceScatter<K>&);
 WARDMIS_TECHNIQUE_COUNTS(WARDMIS_INSTANTIATE)
 
 }  // namespace wardmis

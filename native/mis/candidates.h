@@ -93,10 +93,10 @@ struct CandidateSums {
 // Of all hits of a surface, what a few of them are not likely to meet: the scatter of the gains, and that of samples of
 // equal counts.
 template <size_t K>
-struct GainScatter {
+struct SurfaceScatter {
   double gain2[kCandidates<K>]{}, within = 0, integral = 0, hits = 0;
 
-  GainScatter& operator+=(const CandidateSums<K>& b) {
+  SurfaceScatter& operator+=(const CandidateSums<K>& b) {
     for (int c = 0; c < kCandidates<K>; ++c) gain2[c] += double(b.gain2[c]);
     within += double(b.within[0]), integral += double(b.integral);
     hits += double(b.hits);
@@ -177,13 +177,13 @@ inline constexpr int kLeastHits = 8;  // fewer say nothing of their own noise
 // `sums` and of 16 more hits with the scatter of the whole `surface`, on which `sums` lies: rare bright samples that a
 // neighbourhood did not meet show elsewhere on it.
 template <size_t K>
-Fractions<K> chooseCandidate(const CandidateSums<K>& sums, const GainScatter<K>& surface, const CandidateList<K>& list,
-                             const SampleCost<K>& cost);
+Fractions<K> chooseCandidate(const CandidateSums<K>& sums, const SurfaceScatter<K>& surface,
+                             const CandidateList<K>& list, const SampleCost<K>& cost);
 
 // Whether so few samples at a hit are as good as more: of equal counts they leave a scatter of less than half a percent
 // of what a hit sends. All other noise is of which hits are met, as at the edges of what a mirror shows. Of the whole
 // surface, which meets what is rare, less than 10 %.
 template <size_t K>
-bool suffice(int samples, const CandidateSums<K>& sums, const GainScatter<K>& surface);
+bool suffice(int samples, const CandidateSums<K>& sums, const SurfaceScatter<K>& surface);
 
 }  // namespace wardmis

@@ -190,7 +190,7 @@ Densities chosen(const Trial& t, int pairs, int rest, const Densities* cost) {
       }
     hit.addTo(sums, price);
   }
-  GainScatter<K> all;
+  SurfaceScatter<K> all;
   const Fractions<K> a = chooseCandidate<K>(sums, all += sums, list, price);
   return {double(a[0]), double(a[1]), double(a[2])};
 }

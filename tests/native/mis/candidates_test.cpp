@@ -30,7 +30,7 @@ Fractions<3> choose(const WardCase& c, int hits, const Fractions<3>& cost, uint6
       }
     hit.addTo(sums, {0, cost});
   }
-  GainScatter<3> surface;
+  SurfaceScatter<3> surface;
   return chooseCandidate<3>(sums, surface += sums, all, {0, cost});
 }
 
@@ -140,7 +140,7 @@ TEST(Candidates, AGainHasTheScatterOfItsSurface) {
   };
   CandidateSums<3> here;
   for (int h = 0; h < 200; ++h) add(here, h % 2 == 0 ? 1.0f : 1.1f, {4, 0.1f, 0.1f});
-  GainScatter<3> calm, rare;
+  SurfaceScatter<3> calm, rare;
   calm += here;
   CandidateSums<3> elsewhere = here;
   add(elsewhere, 1000, {0, 0.1f, 4});  // the light alone finds it
@@ -168,7 +168,7 @@ TEST(Candidates, FewSamplesSufficeWhereAllTellTheSame) {
     if (h < 4) add(few, f, 0);
   }
   const auto surfaceOf = [](const CandidateSums<3>& sums) {
-    GainScatter<3> surface;
+    SurfaceScatter<3> surface;
     return surface += sums;
   };
   EXPECT_TRUE(suffice(2, mirror, surfaceOf(mirror)));

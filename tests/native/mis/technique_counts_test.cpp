@@ -121,8 +121,8 @@ void agreesWithThree() {
   };
   for (Allocation rule : kRules)
     same(allocate<3>(rule, few, 0b111, 0.1f), allocate<K>(rule, many, mask, 0.1f), name(rule));
-  GainScatter<3> fewGains;
-  GainScatter<K> manyGains;
+  SurfaceScatter<3> fewGains;
+  SurfaceScatter<K> manyGains;
   same(chooseCandidate<3>(fewSums, fewGains += fewSums, fewLists.of(0b111), {}),
        chooseCandidate<K>(manySums, manyGains += manySums, manyLists.of(mask), {}), "auto");
 }
