@@ -80,8 +80,8 @@ SCATTER = 1.25
 def verdict(rows: list[Row], baseline: str = "equal") -> str:
     """Which allocation one scene's `rows` speak for: error times time over the baseline's, since time buys less error."""
     # without the worst pixels: in one run a few fireflies would choose
-    errors = {r.allocation: (r.rel_mse_trimmed, r.seconds) for r in rows if r.allocation != CYCLES}
-    cost = {name: error * seconds for name, (error, seconds) in errors.items() if error is not None}
+    told = [r for r in rows if r.allocation != CYCLES]
+    cost = {r.allocation: r.rel_mse_trimmed * r.seconds for r in told if r.rel_mse_trimmed is not None}
     ratios = {name: value / cost[baseline] for name, value in cost.items() if name != baseline}
     said = ", ".join(f"{name} {ratio:.2f}" for name, ratio in ratios.items())
     best = min(ratios, key=lambda name: ratios[name])

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/options.h"
+#include "gltf/reader.h"
 
 namespace wardmis {
 namespace {
@@ -178,12 +179,11 @@ nlohmann::json toJson(const RenderSettings& s) {
 void useResolution(Scene& scene, const std::string& text) {
   int w = 0, h = 0;
   char rest = 0;
-  constexpr int kMost = 65536;
   if (std::sscanf(text.c_str(), "%dx%d%c", &w, &h, &rest) != 2 || w < 1 || h < 1)
     throw Error(ExitCode::kUsage, fmt::format("--resolution '{}'", text), "give WIDTHxHEIGHT, for example 1920x1080");
-  if (w > kMost || h > kMost)
+  if (std::max(w, h) > kLargestSide)
     throw Error(ExitCode::kUsage, fmt::format("--resolution '{}' is too large", text),
-                fmt::format("give at most {} pixels a side", kMost));
+                fmt::format("give at most {} pixels a side", kLargestSide));
   Film& f = scene.film;
   // panoramas but those with a sensor show all of their angles in any frame
   const bool fitted =

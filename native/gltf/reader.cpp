@@ -21,7 +21,6 @@ namespace wardmis {
 namespace {
 
 constexpr const char* kExtension = "WARDMIS_scene";
-constexpr int kLargestSide = 1 << 16;
 constexpr size_t kMostWorlds = 16;  // each has a table of its own; an exporter needs one for each kind of ray
 
 void checkVersion(const Json& root) {

@@ -10,6 +10,8 @@
 
 namespace wardmis {
 
+inline constexpr int kLargestSide = 1 << 16;  // of a frame, in pixels
+
 // Reads and checks a scene. Geometry is a view into the mapped file where its layout allows. Images and UVs that no
 // material in use needs are not loaded (and listed in Scene::leftOut).
 // Throws Error(kFile) if the file cannot be opened, Error(kScene) if anything in it is wrong, naming the JSON path.

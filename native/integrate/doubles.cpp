@@ -35,8 +35,7 @@ bool isDouble(const BuiltScene& built, const Hit& hit) {
 
 std::string Doubles::told() const {
   return fmt::format(
-      "{}: {:.0f} % of the picture shows faces that lie exactly in one place with others; which of them is "
-      "seen, and "
+      "{}: {:.0f} % of the picture shows faces that lie exactly in one place with others; which of them is seen, and "
       "how dark they are in their own shadow, is a matter of rounding, in Cycles, too, and differs; move them apart, "
       "or merge them",
       name.empty() ? "an object without a name" : fmt::format("object '{}'", name), std::ceil(100 * share));

@@ -357,7 +357,13 @@ class Image(CommandTest):
             self.assertFalse(passes["Allocation Lobe"].any())
         # Lambert under a point, straight below it: 0.8/pi * 5/2^2
         self.assertAlmostEqual(combined(self.out)[7:9, 7:9, 0].mean(), 0.8 / np.pi * 5 / 4, delta=2e-3)
-        # without the point, nothing gives light
+        # with a lamp that is too small to be there, or without any, nothing gives light
+        document["nodes"][2]["extensions"] = {"WARDMIS_scene": {"light": 0}}
+        lamp = {"type": "area", "radiance": 1, "size": [1e-12, 1e-12]}
+        document["extensions"]["WARDMIS_scene"]["lights"] = [lamp]
+        scene.write_text(json.dumps(document))
+        said = self.run_command("render", scene, "-o", self.out, "--spp", "1").stderr
+        self.assertIn("the scene's lights are so weak or so small", said)
         document["scenes"][0]["nodes"].pop()
         scene.write_text(json.dumps(document))
         self.assertIn("gives light", self.run_command("render", scene, "-o", self.out, "--spp", "1").stderr)

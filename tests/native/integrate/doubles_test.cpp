@@ -22,6 +22,9 @@ Doubles floorWith(float height) {
 TEST(Doubles, AreSeenWhereTheyLie) {
   EXPECT_NEAR(floorWith(0).share, 0.25, 0.02);  // the floor's triangles reach far beyond
   EXPECT_NE(floorWith(0).told().find("'object': 25 % of the picture"), std::string::npos) << floorWith(0).told();
+  Doubles unnamed = floorWith(0);
+  unnamed.name.clear();
+  EXPECT_EQ(unnamed.told().find("an object without a name: 25 % of the picture"), 0u) << unnamed.told();
   for (const float height : {0.01f, -0.01f}) EXPECT_EQ(floorWith(height).share, 0) << height;
 }
 
