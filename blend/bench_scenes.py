@@ -14,20 +14,17 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE)]
 
+from hidden_lamps import begin, box, plain  # noqa: E402
 from parts import (  # noqa: E402
     add_area,
     add_camera,
     add_light,
     add_mesh,
-    box_mesh,
     emitter,
-    empty_world,
     look_at,
-    set_up,
     sphere_mesh,
     square,
 )
-from studio import principled  # noqa: E402
 
 
 def main(folder, names):
@@ -45,22 +42,6 @@ def main(folder, names):
 def opened(name, integrator="path"):
     bpy.ops.wm.open_mainfile(filepath=str(HERE / f"{name}.blend"))
     bpy.context.scene.wardmis.integrator = integrator
-
-
-def begun():
-    """An empty scene, without light."""
-    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
-    set_up(768, 512)
-    empty_world().nodes["Background"].inputs["Strength"].default_value = 0.0
-
-
-def plain(name, color, roughness):
-    return principled(name, {"Base Color": (*color, 1), "Roughness": roughness})
-
-
-def box(name, center, scale, material):
-    vertices, faces = box_mesh()
-    return add_mesh(name, np.multiply(vertices, scale) + center, faces, material)
 
 
 def things():
@@ -86,7 +67,7 @@ def veach_mesh_lights():
 
 def walled(*boxes):
     """The things among walls: each a box, by its name, centre and half size."""
-    begun()
+    begin()
     things()
     wall = plain("Wall", (0.7, 0.7, 0.7), 0.8)
     for name, center, scale in boxes:
@@ -146,7 +127,7 @@ def window():
 
 def area_lamps():
     """A hundred small ones in rows, each at another turn."""
-    begun()
+    begin()
     things()
     random = np.random.default_rng(1)
     for x in np.linspace(-5, 5, 10):
@@ -158,7 +139,7 @@ def area_lamps():
 
 def image_sky():
     """A sun of some pixels in a sky that is blue above and brown below."""
-    begun()
+    begin()
     things()
     width, height = 1024, 512
     up = np.linspace(-1, 1, height)[:, None, None]
@@ -190,7 +171,7 @@ def grid(side):
 
 def lamps(number):
     """So many of the same power on the whole, above things on a floor."""
-    begun()
+    begin()
     things()
     side = round(math.sqrt(number))
     for x in (np.arange(side) + 0.5) / side * 10 - 5:
@@ -201,7 +182,7 @@ def lamps(number):
 
 def glowing(number):
     """A lamp of so many triangles over things on a floor."""
-    begun()
+    begin()
     things()
     points, faces = grid(round(math.sqrt(number / 2)))
     add_mesh("Lamp", points * (1, 1, -1) + (0, 0, 4), faces, emitter("Light", 12))
@@ -217,7 +198,7 @@ def under_a_sky():
 
 def triangles(number):
     """Hills of so many."""
-    begun()
+    begin()
     points, faces = grid(round(math.sqrt(number / 2)))
     x, y = points[:, 0], points[:, 1]
     points[:, 2] = 0.06 * (np.sin(9 * x) * np.cos(7 * y) + 0.4 * np.sin(61 * x + 3) * np.sin(53 * y))
@@ -227,7 +208,7 @@ def triangles(number):
 
 def instances(number):
     """So many balls of 360 triangles in a slab."""
-    begun()
+    begin()
     vertices, faces = sphere_mesh(20, 10)
     side = round(math.sqrt(number))
     ball = add_mesh("Ball", np.multiply(vertices, 4 / side), faces, plain("Ball", (0.6, 0.3, 0.2), 0.4), smooth=True)

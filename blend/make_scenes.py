@@ -16,6 +16,7 @@ from mathutils import Vector
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "addon")]
 
+from hidden_lamps import ajar, caustic, lamps_inside  # noqa: E402
 from parts import (  # noqa: E402
     add_area,
     add_camera,
@@ -211,6 +212,9 @@ SCENES = {
     "veach": veach,
     "veach-glossiness": veach_glossiness,
     "studio": studio,
+    "ajar": ajar,
+    "caustic": caustic,
+    "lamps-inside": lamps_inside,
     "furnace": furnace,
     "stiff-mirror": stiff_mirror,
     "stiff-grazing": stiff_grazing,

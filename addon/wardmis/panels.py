@@ -116,7 +116,10 @@ class WARDMIS_RENDER_PT_light_paths(RenderPanel, bpy.types.Panel):
     def draw(self, context: Any) -> None:
         settings, column = context.scene.wardmis, self._column()
         column.prop(settings, "integrator")
-        follows = settings.integrator == "path"
+        follows = settings.integrator != "direct"
+        if settings.integrator == "bidirectional":
+            for number in ("light_paths", "connections", "later_connections", "light_tracing"):
+                _row(column, settings.allocation != "auto").prop(settings, number)
         _row(column, follows).prop(settings, "bounces")
         if settings.bounces == "own":
             for limit in ("max_depth", "max_diffuse", "max_glossy", "max_transmission", "max_transparent"):

@@ -114,6 +114,12 @@ INTEGRANDS = (
 )
 INTEGRATORS = (
     ("path", "Path", "All light, also that which comes by way of other surfaces, up to Max Depth of them"),
+    (
+        "bidirectional",
+        "Bidirectional",
+        "The same, by paths from the lights, too: for light that comes through a door ajar or out of frosted glass. With the "
+        "allocation Automatic only where they pay",
+    ),
     ("direct", "Direct", "Only light that comes straight from lamps, the sky and glowing surfaces: faster, and darker"),
 )
 BOUNCES = (
@@ -203,6 +209,38 @@ class WARDMIS_PG_scene(bpy.types.PropertyGroup):
         description="Which of the light is rendered",
         items=INTEGRATORS,
         default="path",
+        update=_draw_anew,
+    )
+    light_paths: FloatProperty(
+        name="Light Paths",
+        description="Paths from the lights for each sample of a pixel; the allocation Automatic chooses for itself",
+        default=1.0,
+        min=0.0,
+        soft_max=8.0,
+        max=64.0,
+        update=_draw_anew,
+    )
+    connections: IntProperty(
+        name="Connections",
+        description="With places that paths from the lights reach, of the first surface that the camera sees; the allocation "
+        "Automatic chooses for itself",
+        default=1,
+        min=0,
+        max=64,
+        update=_draw_anew,
+    )
+    later_connections: IntProperty(
+        name="Later Connections",
+        description="The same of each surface that the camera's paths meet later",
+        default=1,
+        min=0,
+        max=64,
+        update=_draw_anew,
+    )
+    light_tracing: BoolProperty(
+        name="Light Tracing",
+        description="Paths from the lights are traced to the camera by themselves, too, as caustics want it",
+        default=True,
         update=_draw_anew,
     )
     stop_by: EnumProperty(name="Stop by", description="What ends the render", items=STOPS, default="samples")

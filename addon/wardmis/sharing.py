@@ -20,4 +20,16 @@ def uses_pilot(settings: Any) -> bool:
 def options(settings: Any) -> dict[str, str]:
     """Of the command, whose default yields only where it is not given."""
     allocation = {} if yields(settings) else {"allocation": settings.allocation}
-    return {**allocation, "pixels": settings.pixels, "weights": settings.weights}
+    return {**allocation, "pixels": settings.pixels, "weights": settings.weights, **ways(settings)}
+
+
+def ways(settings: Any) -> dict[str, str]:
+    """How many paths from the lights there are, and what becomes of them."""
+    if settings.integrator != "bidirectional":
+        return {}
+    return {
+        "light-paths": f"{settings.light_paths:.6g}",
+        "connections": str(settings.connections),
+        "later-connections": str(settings.later_connections),
+        "light-tracing": "true" if settings.light_tracing else "false",
+    }

@@ -9,6 +9,7 @@
 #include "cli/verbs.h"
 #include "gltf/reader.h"
 #include "image/texel_memory.h"
+#include "integrate/light_tracer.h"
 #include "scene/defaults.h"
 #include "world/needs.h"
 
@@ -43,7 +44,7 @@ Verb addInfo(CLI::App& app) {
       ->check(CLI::IsMember({"split", "joint"}))
       ->capture_default_str();
   app.add_option("--integrator", o->integrator, "as for render")
-      ->check(CLI::IsMember({"direct", "path"}))
+      ->check(CLI::IsMember({"direct", "path", "bidirectional"}))
       ->capture_default_str();
   app.add_flag("--json", o->json, "machine output");
 
@@ -55,8 +56,11 @@ Verb addInfo(CLI::App& app) {
     const std::vector<Environment> environments = environmentsOf(scene);
     const Emitters emitters(scene, geometry, environments);
     uint32_t n = needs(scene, geometry, emitters, o->integrand == "joint");
-    if (o->integrator == "path") n |= kNeedsBounces;
-    const std::vector<std::string> left = leftOut(scene, n, emitters);
+    if (o->integrator != "direct") n |= kNeedsBounces;
+    std::vector<std::string> left = leftOut(scene, n, emitters);
+    if (o->integrator == "bidirectional")
+      if (std::string none = noLightPaths(scene, geometry, emitters, {}); !none.empty())
+        left.push_back(std::move(none));
     const Film& film = scene.film;
     const std::vector<std::pair<std::string, std::map<std::string, int>>> programs = programsOf(scene);
     const TexelUse texels = texelUse();

@@ -25,7 +25,7 @@ constexpr std::array kPixelSamples{PixelSamples::kEven, PixelSamples::kByError, 
 constexpr std::array kWeights{Weights::kBalance, Weights::kNonbalance, Weights::kPower, Weights::kCutoff,
                               Weights::kMaximum};
 constexpr std::array kIntegrands{Integrand::kSplit, Integrand::kJoint};
-constexpr std::array kIntegrators{Integrator::kDirect, Integrator::kPath};
+constexpr std::array kIntegrators{Integrator::kDirect, Integrator::kPath, Integrator::kBidirectional};
 constexpr std::array kSamplers{SamplerType::kIndependent, SamplerType::kStratified, SamplerType::kSobol};
 
 GivenCost costOf(const std::string& text) {
@@ -59,8 +59,23 @@ void SettingOptions::add(CLI::App& app) {
   app.add_option("--integrand", integrand_, "specular and diffuse as separate integrals or as one")
       ->check(among(kIntegrands))
       ->capture_default_str();
-  app.add_option("--integrator", integrator_, "direct light only, or all of it")
+  app.add_option(
+         "--integrator", integrator_,
+         "direct light only; all of it, by paths from the camera; or bidirectional: by paths from the lights, too")
       ->check(among(kIntegrators))
+      ->capture_default_str();
+  app.add_option("--light-paths", numbers_.fromLights.paths,
+                 "of a bidirectional render: paths from the lights for each camera sample of a pixel")
+      ->check(between(0, 64))
+      ->capture_default_str();
+  app.add_option("--connections", numbers_.fromLights.connections,
+                 "with their vertices, of the first vertex of a path from the camera; 0: none")
+      ->check(CLI::Range(0, 64))
+      ->capture_default_str();
+  app.add_option("--later-connections", numbers_.fromLights.laterConnections, "of each later vertex")
+      ->check(CLI::Range(0, 64))
+      ->capture_default_str();
+  app.add_option("--light-tracing", numbers_.fromLights.film, "whether they are traced to the film, too")
       ->capture_default_str();
   app.add_option("--sampler", sampler_, "where the random numbers come from")
       ->check(among(kSamplers))
@@ -122,6 +137,13 @@ RenderSettings SettingOptions::chosen() const {
                 "--allocation auto with --weights nonbalance: auto predicts the variance for balance weights, and "
                 "would do harm with these",
                 "leave one of them out, or take --allocation standard-deviation, the best for nonbalance weights");
+  if (s.bidirectional() && s.weights && *s.weights != Weights::kBalance && *s.weights != Weights::kPower)
+    throw Error(
+        ExitCode::kUsage,
+        fmt::format("--integrator bidirectional with --weights {}: its weights are over all ways to make a path, "
+                    "for which there are balance and power",
+                    weights_),
+        "take one of these, or leave --weights out for balance");
   return s;
 }
 
@@ -163,6 +185,10 @@ nlohmann::json toJson(const RenderSettings& s) {
           {"integrator", name(s.integrator)},
           {"sampler", name(s.sampler)},
           {"samples_per_hit", s.samplesPerHit},
+          {"light_paths", s.fromLights.paths},
+          {"connections", s.fromLights.connections},
+          {"later_connections", s.fromLights.laterConnections},
+          {"light_tracing", s.fromLights.film},
           {"pilot_spp", s.pilotSpp},
           {"min_fraction", s.minFraction},
           {"cost", s.costFrom == CostFrom::kRays       ? nlohmann::json("rays")

@@ -32,6 +32,7 @@ json countsJson(const Counts& c, const std::vector<std::string>& techniques) {
     samples[techniques[t]] = c.samples[t];
     rays[t + 1 == techniques.size() ? "shadow" : techniques[t]] = c.rays[t];
   }
+  if (c.lightRays > 0) rays["light"] = c.lightRays, rays["connections"] = c.connections;
   samples["total"] = Counts::sum(c.samples), rays["total"] = c.allRays();
   return {{"camera_paths", c.cameraRays},
           {"samples", std::move(samples)},
@@ -57,6 +58,14 @@ json pixelSamples(const FilmBuffer& film, double gain) {
   return {{"least", least}, {"most", most}, {"expected_gain", gain}};
 }
 
+// Of paths from the lights; null: there are none.
+json waysJson(const Statistics& s) {
+  if (!s.ways) return {};
+  return {{"samples_at_hit", s.ways->samplesAtHit}, {"light_paths", s.ways->paths},
+          {"connections", s.ways->connections},     {"later_connections", s.ways->laterConnections},
+          {"light_tracing", s.ways->film},          {"expected_gain", s.wayGain}};
+}
+
 json statisticsJson(const std::string& path, const RenderSettings& settings, const Scene& scene, const Statistics& s,
                     const FilmBuffer& film, double read, double write, double total) {
   json j{{"version", WARDMIS_VERSION},
@@ -72,6 +81,7 @@ json statisticsJson(const std::string& path, const RenderSettings& settings, con
          {"cpu_seconds", {{"pilot", s.pilotCpuSeconds}, {"render", s.renderCpuSeconds}}},
          {"samples_per_pixel", film.samples},
          {"pixel_samples", pixelSamples(film, s.pixelGain)},
+         {"ways", waysJson(s)},
          {"hidden_lights", s.hiddenLights < 1 ? json(s.hiddenLights) : json()},
          {"pilot_in_image", s.allocated ? json(s.pilotKept) : json()},
          {"pixels", film.pixels.size()},

@@ -18,6 +18,9 @@ class PixelFilter {
 
   // Offset from the pixel's centre, in pixels.
   Vec2f sample(Vec2f u) const { return {offset(u.x), offset(u.y)}; }
+  // Its density there, per square pixel; beyond the radius along either axis it is 0.
+  float density(Vec2f offset) const { return density(offset.x) * density(offset.y); }
+  float radius() const { return radius_; }
 
  private:
   float offset(float u) const {
@@ -26,6 +29,11 @@ class PixelFilter {
     const float f = x - static_cast<float>(i);
     return inverse_[i] + f * (inverse_[std::min(i + 1, inverse_.size() - 1)] - inverse_[i]);
   }
+  float density(float v) const;
+
+  FilterType type_;
+  float width_, radius_ = 0.5f;
+  float norm_ = 1;              // what its shape's integral is to be divided by
   std::vector<float> inverse_;  // quantiles
 };
 

@@ -5,7 +5,9 @@
 
 #include <cstddef>
 #include <limits>
+#include <type_traits>
 
+#include "integrate/connect.h"
 #include "integrate/counts.h"
 #include "integrate/draw.h"
 #include "integrate/watch.h"
@@ -41,6 +43,7 @@ class HitEstimate {
   using X = InteractionOf<SurfaceOf<N, K>>;
   static constexpr size_t kLobes = Of::kLobes, kCosine = Of::kCosine, kLight = Of::kLight;
   static constexpr bool kGeneral = Draws<N, T, K>::kGeneral;
+  static constexpr bool kConnects = (N & kNeedsConnections) != 0;
   static constexpr TechniqueMask kAny = Of::kAll, kByLight = maskOf(kLight),
                                  kBySurface = static_cast<TechniqueMask>(kAny & ~kByLight);
 
@@ -57,6 +60,7 @@ class HitEstimate {
         present_(integrandsOf<N, K>(x)),
         wo_(localView(x)),
         view_(viewOfLights(world, x)),
+        sampler_(samplerOf(sampler)),
         mixture_(plan.fractions, plan.samples, plan.weights),
         draws_(world, sampler, x, plan, view_, present_, wo_) {}
 
@@ -76,6 +80,8 @@ class HitEstimate {
       else
         traceSurface(s);
     }
+    if constexpr (kConnects)
+      if (plan_.camera != nullptr) connectLight();
     if constexpr (Watch::kWatches)
       if (watch_.moments != nullptr)
         for (Moments<K>& m : watch_.moments->of) m.hits += 1;
@@ -93,13 +99,23 @@ class HitEstimate {
     LitOtherwise<K> lit;  // where samples of lights bring something else
     Fractions<K> p{};     // densities of the techniques
     float counted = 0;    // that of the light as Cycles counts it
-    bool sharp = false;   // a lobe's of one direction
-    bool ahead = true;    // it leaves the surface on the viewer's side
-    float moved = 0;      // how far light samples are, near the edge of the surface's own shadow
+    // of paths from the lights that bring the same: Mixture::scale()
+    [[no_unique_address]] std::conditional_t<kConnects, Ways, std::nullptr_t> others{};
+    bool sharp = false;  // a lobe's of one direction
+    bool ahead = true;   // it leaves the surface on the viewer's side
+    float moved = 0;     // how far light samples are, near the edge of the surface's own shadow
     TechniqueMask own() const { return sharp ? maskOf(technique) : kAny; }
     bool otherwise() const { return kGeneral && lit.any; }
   };
 
+  // Of what paths from the lights alone want.
+  using OwnSampler = std::conditional_t<kConnects, const Sampler&, std::nullptr_t>;
+  static OwnSampler samplerOf(const Sampler& sampler) {
+    if constexpr (kConnects)
+      return sampler;
+    else
+      return nullptr;
+  }
   static Vec3<T> localView(const X& x) {
     const Vec3f wo = x.frame.toLocal(x.wo);
     return {T(wo.x), T(wo.y), T(wo.z)};
@@ -212,6 +228,7 @@ class HitEstimate {
       if (isBlack(left)) return;
       if constexpr (kGeneral) radiance *= left;
     }
+    if constexpr (kConnects) s.others = byLight(s, l.emitter, l.direction, l.distance);
     if (l.exclusive) {
       weighExclusive(s, l, radiance);
     } else {
@@ -282,6 +299,7 @@ class HitEstimate {
       const auto meet = [&](const EmitterHit& e) {
         if (isHidden(e.pdf)) return;
         s.p[kLight] = e.pdf, s.counted = e.counted;
+        if constexpr (kConnects) s.others = e.pdf > 0 ? byLight(s, e.emitter, d, e.distance) : Ways{};
         weigh(s, kGeneral ? e.radiance * seenThrough : e.radiance, e.visibility);
       };
       world_.emitters.along(ray, tMax, escaped, static_cast<int>(plan_.vertex), &view_, meet,
@@ -296,6 +314,7 @@ class HitEstimate {
       s.p[kLight] = found.pdf, s.counted = found.counted;
       Rgb radiance = interact<N, K>(world_.scene, world_.geometry, ray, hit).emission;
       if constexpr (kGeneral) radiance *= seenThrough;
+      if constexpr (kConnects) s.others = found.pdf > 0 ? byLight(s, found.emitter, d, hit.t) : Ways{};
       if (!isHidden(found.pdf)) weigh(s, radiance, world_.geometry.placements[hit.placement].visibility);
     }
     if constexpr (kGeneral)
@@ -313,8 +332,76 @@ class HitEstimate {
     if constexpr (kGeneral) w *= seenThrough;
     if (!(strength(w) > 0)) return;
     noteShare(s);
+    if constexpr (kConnects)
+      if (plan_.camera != nullptr)
+        plan_.camera->next.set(continuations_.count, endAfter(s, used, ray.direction, hit.t));
     continuations_.list.make(continuations_.count++,
                              [&] { return Continuation<K>{ray, hit, w, t, bounce, scale, used, s.set, s.p}; });
+  }
+
+  // ---- paths from the lights ----
+
+  // The densities of ways to find an emitter in a direction in which paths from the lights made some of the vertices.
+  Ways byLight(const Sample& s, uint32_t emitter, Vec3f direction, float distance) const {
+    if (plan_.camera == nullptr || s.sharp) return {};
+    const CameraVertex& camera = *plan_.camera;
+    const float cosLight = std::abs(dot(x_.geometric, direction)), cosViewer = std::abs(dot(x_.geometric, x_.wo));
+    const double rays = double(camera.light.emission.density(emitter, x_.position, direction, distance, x_.path.time));
+    const WeightPower& power = camera.light.power;
+    return camera.end.others(power(double(lightDensity<K>(x_.surface, s.p, cosViewer, cosLight)))) *
+           power(rays * double(cosLight));
+  }
+
+  // What the camera's end is at the next vertex, t away, but for the cosine there.
+  PathEnd endAfter(const Sample& s, TechniqueMask used, Vec3f direction, float t) const {
+    const CameraVertex& camera = *plan_.camera;
+    const WeightPower& power = camera.light.power;
+    const float cosLight = std::abs(dot(x_.geometric, direction)), cosViewer = std::abs(dot(x_.geometric, x_.wo));
+    double q = 0;
+    for (size_t k = 0; k < K; ++k)
+      if (has(used, k)) q += double(mixture_.n[k]) * double(s.p[k]);
+    const double reverse = s.sharp ? 0 : double(lightDensity<K>(x_.surface, s.p, cosViewer, cosLight)),
+                 d2 = double(t) * double(t);
+    return {plan_.vertex == 0 ? kAtFirst : kAtLater,
+            s.sharp ? 0 : power(camera.light.perVertex(plan_.vertex == 0 ? kAtFirst : kAtLater)),
+            camera.end.others(power(reverse), !s.sharp) * power(double(cosLight) / d2), power(q / d2)};
+  }
+
+  // For a pilot. alone: the sample's scale without paths from the lights.
+  void noteWays(const Sample& s, Rgb value, float alone, bool shared) const {
+    if (plan_.camera == nullptr || plan_.camera->notes == nullptr || isBlack(value)) return;
+    const CameraVertex& camera = *plan_.camera;
+    Ways ways = shared ? s.others : Ways{};
+    ways += Ways::one(kByCamera, 1 / double(alone));
+    if (plan_.vertex > 0) return camera.note(value, ways);
+    const float v = luminance(absolute(value * camera.throughput));
+    WayScatter& scatter = camera.notes->scatter[s.technique];
+    camera.notes->candidates.add(scatter.sums, v, 1, ways);
+    scatter.sum += v, scatter.squares += v * v;
+  }
+
+  void connectLight() {
+    const CameraVertex& camera = *plan_.camera;
+    const LightPaths& light = camera.light;
+    const auto k = static_cast<uint32_t>(light.connectionsAt(plan_.vertex));
+    if (light.vertices.empty() || k == 0) return;
+    const uint32_t dimension = kConnectionPoint + plan_.vertex * kConnectionsPerVertex;
+    const float scale = 1 / (static_cast<float>(k) * static_cast<float>(light.kept));
+    counts_.joined[plan_.vertex == 0 ? 0 : 1] += k;
+    for (uint32_t m = 0; m < k; ++m) {
+      const uint32_t index = plan_.index * k + m;
+      const Chosen chosen =
+          chooseVertex(light, x_, plan_.vertex, camera.depth, combine(combine(plan_.pixelKey, dimension), index));
+      if (!(chosen.weight > 0)) continue;
+      const Vec2f bounce = light.countsBounces ? sampler_.get2D(plan_.pixelKey, dimension + 1, index) : Vec2f{};
+      Ways ways;
+      const Rgb value = connect<N, K>(world_, camera, x_, mixture_.n, static_cast<int>(plan_.vertex),
+                                      light.vertices[chosen.index], bounce, ways, counts_) *
+                        (scale * chosen.weight);
+      sum_ += value;
+      if (camera.notes != nullptr) [[unlikely]]
+        if (!isBlack(value)) camera.note(value, ways);
+    }
   }
 
   // ---- weigh ----
@@ -354,6 +441,11 @@ class HitEstimate {
     if (s.technique == kLight && otherwise) add(s, kByLight, !s.ahead, s.lit.other, radiance * byLight, visibility);
   }
 
+  float scaleOf(const Sample& s, TechniqueMask used, bool shared) const {
+    if constexpr (kConnects) return mixture_.scale(s.technique, s.p, used, shared ? s.others.sum() : 0);
+    return mixture_.scale(s.technique, s.p, used);
+  }
+
   // One sample's share of light, by MIS over the techniques of each integrand. among: those that find what lies there.
   void add(const Sample& s, TechniqueMask among, bool ahead, const Values& all, Rgb radiance, uint8_t visibility) {
     constexpr uint8_t kAll = kSeenBySurfaces | kSeenByTranslucence;
@@ -364,8 +456,10 @@ class HitEstimate {
     if (!split_) {
       const Rgb value = total(f) * radiance;
       const TechniqueMask used = techniques(t, among);
-      const float scale = mixture_.scale(t, s.p, used);
+      const float scale = scaleOf(s, used, ahead == s.ahead && among != kByLight);
       sum_ += value * scale;
+      if constexpr (kConnects)
+        noteWays(s, value * scale, mixture_.scale(t, s.p, used), ahead == s.ahead && among != kByLight);
       note(0, value, s.p, used, s.set);
       for (size_t i = 0; i < f.size(); ++i) noteLight(i, f[i] * radiance * scale);
       return;
@@ -390,8 +484,16 @@ class HitEstimate {
       for (size_t i = 0; i < each.size(); ++i) each[i] += more[i];
     }
     for (Rgb& value : each) value = value * radiance;
-    sum_ += total(each) / (l.pdf * mixture_.n[kLight]);
-    const float scale = 1 / (l.pdf * mixture_.n[kLight]);
+    float scale = 1 / (l.pdf * mixture_.n[kLight]);
+    if constexpr (kConnects) {
+      Fractions<K> alone{};
+      alone[kLight] = l.pdf;
+      scale = mixture_.scale(kLight, alone, kByLight, s.moved > 0 ? 0 : s.others.sum());
+      sum_ += total(each) * scale;
+      noteWays(s, total(each) * scale, mixture_.scale(kLight, alone, kByLight), !(s.moved > 0));
+    } else {
+      sum_ += total(each) / (l.pdf * mixture_.n[kLight]);
+    }
     for (size_t i = 0; i < each.size(); ++i) noteLight(i, each[i] * scale);
     if constexpr (Watch::kWatches) {
       // which of the lights is drawn is noise, too, and no other technique covers them
@@ -465,6 +567,7 @@ class HitEstimate {
   const PerIntegrand<bool, K> present_;
   const Vec3<T> wo_;  // local
   const LightView view_;
+  [[no_unique_address]] const OwnSampler sampler_;
   const Mixture<K> mixture_;
   Draws<N, T, K> draws_;
   bool vectorised_ = false;

@@ -4,7 +4,9 @@
 #pragma once
 
 #include "film/film.h"
+#include "integrate/light_paths.h"
 #include "integrate/pilot.h"
+#include "integrate/shares.h"
 #include "world/camera_ray.h"
 
 namespace wardmis {
@@ -25,11 +27,21 @@ struct KernelInput {
   SampleCost<K> cost;                   // for `auto`
   int samplesPerHit;
   PathLimits limits;
-  const Shutter* shutter;  // null: nothing moves
-  float least;             // that a sample may be: 0, unless a light is negative
-  int x0, y0;              // of the border in the full frame
-  int side = 1;            // of a pixel of the film, in pixels of the image; more for a coarse pilot
+  const Shutter* shutter;             // null: nothing moves
+  float least;                        // that a sample may be: 0, unless a light is negative
+  int x0, y0;                         // of the border in the full frame
+  int side = 1;                       // of a pixel of the film, in pixels of the image; more for a coarse pilot
+  const LightPaths* light = nullptr;  // null: there are no paths from the lights
+  // For a pilot that chooses how many there are: of each pixel; null: there is none.
+  const WayCandidates* wayCandidates = nullptr;
+  std::vector<WaySums>* waySums = nullptr;
 };
+
+// The fractions at the first hit of a camera's path to which paths from the lights are connected.
+template <size_t K, class S>
+Fractions<K> firstFractions(const KernelInput<K>& in, const S& surface, TechniqueMask mask) {
+  return restrict<K>(in.rule == Allocation::kAlbedo ? albedoFractions<K>(surface) : in.fractions, mask);
+}
 
 struct Tile {
   int x0, y0, x1, y1;  // within the border
@@ -41,8 +53,16 @@ struct Tile {
 template <size_t K>
 using TileKernel = void (*)(const KernelInput<K>&, const Tile&, FilmBuffer&, Pilot<K>* pilot, Counts&);
 
-// The kernel for a mask of kKernelNeeds bits.
+// The kernel for a mask of kKernelNeeds bits; with kNeedsConnections that for all surfaces to which paths from lights
+// are connected.
 template <size_t K>
 TileKernel<K> tileKernel(uint32_t needs);
+template <size_t K>
+TileKernel<K> connectingKernel();
+
+// Traces the paths from the lights that are numbered from `first` to before `last`, of all of the image; their vertices
+// and what they bring to the film are added to the lists.
+template <size_t K>
+void traceLightPaths(const KernelInput<K>& in, uint32_t first, uint32_t last, LightList& to, Counts& counts);
 
 }  // namespace wardmis

@@ -20,6 +20,7 @@ constexpr uint32_t compiled(uint32_t needs) {
 
 template <size_t K>
 TileKernel<K> tileKernel(uint32_t needs) {
+  if ((needs & kNeedsConnections) != 0) return connectingKernel<K>();
   static constexpr auto table = []<uint32_t... N>(std::integer_sequence<uint32_t, N...>) {
     return std::array<TileKernel<K>, sizeof...(N)>{&renderTile<compiled<K>(N), K>...};
   }

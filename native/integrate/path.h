@@ -7,36 +7,6 @@
 
 namespace wardmis {
 
-// The usual path tracer's shares: half to the light, the rest to the lobes by albedo.
-template <size_t K, class S>
-Fractions<K> albedoFractions(const S& s) {
-  Fractions<K> a{};
-  float sum = s.diffuseStrength();
-  for (size_t l = 0; l < Techniques<K>::kLobes; ++l)
-    if (s.hasLobe(l)) sum += a[l] = s.strength(l);
-  if (!(sum > 0)) a.fill(1), sum = Techniques<K>::kSurface;
-  float rest = 1;
-  for (size_t l = 0; l < Techniques<K>::kLobes; ++l) {
-    rest -= a[l] /= sum;
-    a[l] *= 0.5f;
-  }
-  a[Techniques<K>::kCosine] = s.hasDiffuse() ? 0.5f * std::max(rest, 0.0f) : 0;
-  a[Techniques<K>::kLight] = 0.5f;
-  return a;
-}
-
-// The techniques that a surface has, where emitters are aimed at or not, and where surface samples find anything or
-// not.
-template <size_t K, class S>
-TechniqueMask techniquesAt(const S& s, bool lights, bool surfaceRays) {
-  TechniqueMask mask = lights ? maskOf(Techniques<K>::kLight) : TechniqueMask{0};
-  if (!surfaceRays) return mask;
-  for (size_t l = 0; l < Techniques<K>::kLobes; ++l)
-    if (s.hasLobe(l)) mask |= maskOf(l);
-  if (s.hasDiffuse()) mask |= maskOf(Techniques<K>::kCosine);
-  return mask;
-}
-
 // Whether the path of a first hit's sample goes on, by a random number u: with a probability as small as its worth
 // where that is less than half of `mean`, what the hit's surface samples bring in mean of light from all around; it
 // then stands for those that do not. Paths of a faint lobe cost as much as those of a bright one, and bring little.
@@ -50,10 +20,11 @@ bool goesOn(Continuation<K>& c, float mean, float u) {
   return true;
 }
 
-// Radiance reflected at the end of `first`, times its weight. index: of this path among the pixel's.
+// Radiance reflected at the end of `first`, times its weight. index: of this path among the pixel's; camera: as it is
+// there, but for the cosine, or null.
 template <uint32_t N, size_t K>
 Rgb followPath(const RenderScene& scene, const Sampler& sampler, uint32_t pixelKey, uint32_t index,
-               const Continuation<K>& first, const PathLimits& limits, Counts& counts) {
+               const Continuation<K>& first, const PathLimits& limits, CameraVertex* camera, Counts& counts) {
   const bool lights = scene.emitters.any();
   Rgb sum{0, 0, 0};
   std::array<int, kBounceKinds> left = limits.bounces;
@@ -69,6 +40,14 @@ Rgb followPath(const RenderScene& scene, const Sampler& sampler, uint32_t pixelK
     const TechniqueMask mask = techniquesAt<K>(x.surface, lights, true);
     if ((mask & ~maskOf(Techniques<K>::kLight)) == 0) break;  // reflects nothing
     HitPlan<K> plan;
+    if constexpr ((N & kNeedsConnections) != 0)
+      if (camera != nullptr) {
+        camera->left = left;
+        camera->arrive(dot(x.geometric, ray.direction), detail::lightReaches(scene, hit));
+        camera->throughput = camera->before * weight;
+        plan.camera = camera;
+        plan.weights = camera->light.power.square ? Weights::kPower : Weights::kBalance;
+      }
     plan.fractions = albedoFractions<K>(x.surface);
     if (!lights) plan.fractions = restrict<K>(plan.fractions, mask);
     plan.samples = lights ? 2 : 1;
@@ -93,6 +72,8 @@ Rgb followPath(const RenderScene& scene, const Sampler& sampler, uint32_t pixelK
         survived /= q;
       }
     }
+    if constexpr ((N & kNeedsConnections) != 0)
+      if (camera != nullptr) camera->end = camera->next[0];
     ray = next.ray;
     hit = next.hit;
   }

@@ -23,6 +23,9 @@ struct Dimensions {
 // That of a camera sample's time: beyond those of all vertices.
 inline constexpr uint32_t kTimePoint = 0x80000000u;
 
+// Those of the paths from the lights that a camera's vertex is connected to.
+inline constexpr uint32_t kConnectionPoint = 0x60000000u, kConnectionsPerVertex = 2;
+
 // Kinds of bounces, as Cycles limits them.
 enum Bounce : uint8_t { kDiffuseBounce, kGlossyBounce, kTransmissionBounce, kBounceKinds };
 
@@ -39,6 +42,8 @@ struct PathLimits {
   }
 };
 
+struct CameraVertex;
+
 // How a hit is to be sampled.
 template <size_t K>
 struct HitPlan {
@@ -47,7 +52,8 @@ struct HitPlan {
   Integrand integrand = Integrand::kSplit;
   Weights weights = Weights::kBalance;
   uint32_t pixelKey = 0, vertex = 0;
-  uint32_t index = 0;  // of this visit, by the camera sample: nothing depends on what others met
+  uint32_t index = 0;              // of this visit, by the camera sample: nothing depends on what others met
+  CameraVertex* camera = nullptr;  // to which paths from the lights are connected; null: there are none
 };
 
 }  // namespace wardmis

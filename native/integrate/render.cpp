@@ -13,8 +13,10 @@
 
 #include "integrate/cost.h"
 #include "integrate/doubles.h"
+#include "integrate/light_tracer.h"
 #include "integrate/memory.h"
 #include "integrate/setup.h"
+#include "integrate/way_pilot.h"
 
 namespace wardmis {
 namespace {
@@ -87,8 +89,9 @@ class Ticker {
 template <size_t K>
 class Run {
  public:
-  Run(const RenderSettings& settings, const RenderObserver& observer, RenderSetup<K>& setup)
-      : settings_(settings), observer_(observer), setup_(setup), start_(now()) {}
+  // before: what has been taken of the time.
+  Run(const RenderSettings& settings, const RenderObserver& observer, RenderSetup<K>& setup, const Clocks& before)
+      : settings_(settings), observer_(observer), setup_(setup), start_(now() - before) {}
 
   Clocks clocks() const { return now() - start_; }
   double seconds() const { return clocks().wall; }
@@ -101,9 +104,9 @@ class Run {
     std::atomic<int> done{0};
     const double total = tilesOf(*film_);
     Ticker ticker([&] { report(pilot != nullptr, samples * done.load() / total); });
-    renderTiles(
-        setup_, *film_, samples, pilot, [&]() -> Counts& { return counts_.local(); }, done,
-        [&] { return stop() == Stop::kDiscard; });
+    const auto counts = [&]() -> Counts& { return counts_.local(); };
+    setup_.traceLightOf(film_->first + film_->samples, counts);
+    renderTiles(setup_, *film_, samples, pilot, counts, done, [&] { return stop() == Stop::kDiscard; });
     ticker.finish();  // it reads what is written now
     if (stop() == Stop::kDiscard) return false;
     const double now = film_->partial + samples;
@@ -157,6 +160,7 @@ class Run {
     while (film_->samples < target && !over()) {
       const double before = seconds();
       chunk = std::min(chunk, target - film_->samples);
+      if (setup_.input.light != nullptr) chunk = 1;  // whose paths from the lights are there
       if (observer_.checkpoint) {
         const uint32_t next = film_->samples == 0 ? 1 : 2 * std::bit_floor(film_->samples);
         chunk = std::min(chunk, next - film_->samples);
@@ -196,6 +200,7 @@ class Run {
   void onto(FilmBuffer& film, uint32_t apart, double each, int side = 1) {
     film_ = &film, apart_ = apart, each_ = each;
     setup_.input.side = side;
+    setup_.connectLights(side == 1);
     timeIsUp_ = false;
   }
 
@@ -291,12 +296,16 @@ template <size_t K>
 FilmBuffer renderWith(const BuiltScene& built, const RenderSettings& settings, Statistics& stats,
                       const RenderObserver& observer) {
   const Film& frame = built.scene.film;
+  const Counts wayPilot = stats.pilotCounts;
   requireMemory(frame.x1 - frame.x0, frame.y1 - frame.y0, settings, built.lobes(), built.catchers != nullptr);
   RenderSetup<K> setup(built, settings);
   stats.buildSeconds = built.seconds;
   stats.needs = setup.needs;
   stats.kernel = setup.kernelNeeds;
-  stats.leftOut = leftOut(built.scene, setup.needs, built.emitters);
+  for (std::string& left : leftOut(built.scene, setup.needs, built.emitters)) stats.leftOut.push_back(std::move(left));
+  if (settings.bidirectional())
+    if (std::string none = noLightPaths(built.scene, built.geometry, built.emitters, settings); !none.empty())
+      stats.leftOut.push_back(std::move(none));
   if (const Doubles doubles = visibleDoubles(built); doubles.share >= kSharedPlaceIsTold)
     stats.doubts.push_back(doubles.told());
   stats.triangles = built.geometry.triangles;
@@ -305,12 +314,22 @@ FilmBuffer renderWith(const BuiltScene& built, const RenderSettings& settings, S
   stats.threads = threadsOf(settings.threads);
   stats.techniques = setup.techniques;
   stats.techniqueNames = built.techniqueNames();
+  if ((setup.needs & kNeedsConnections) != 0) {
+    const FromLights& from = settings.fromLights;
+    stats.ways = {settings.samplesPerHit, from.paths, from.connections, from.laterConnections,
+                  from.film && built.scene.camera.has_value() && setup.input.camera.seesBack()};
+  }
+  if (stats.ways && needsMoments(settings.allocation) && settings.allocation != Allocation::kAuto)
+    stats.leftOut.push_back("no allocation " + std::string(name(settings.allocation)) +
+                            ": it is of paths from the camera alone, and counts are equal");
   const uint32_t target = targetOf(settings), pilotSpp = pilotOf(settings, target);
-  const bool wanted = needsMoments(settings.allocation) && (setup.needs & kNeedsAllocation) != 0;
+  const bool wanted = needsMoments(settings.allocation) && (setup.needs & kNeedsAllocation) != 0 &&
+                      (setup.needs & kNeedsConnections) == 0;
   stats.allocated = wanted && pilotSpp > 0;
   if (wanted && pilotSpp == 0) stats.leftOut.emplace_back(kNoPilot);
 
-  Run<K> run(settings, observer, setup);
+  Run<K> run(settings, observer, setup, stats.wayPilot);
+  stats.pilotSeconds = stats.wayPilot.wall, stats.pilotCpuSeconds = stats.wayPilot.cpu;
   if (observer.started) observer.started(stats);
   SampleCost<K>& cost = setup.input.cost;
   FractionsMap<K> map;
@@ -364,7 +383,7 @@ FilmBuffer renderWith(const BuiltScene& built, const RenderSettings& settings, S
     allocateFrom(film, side);
     setup.drawFrom(own);
     pilotDone();
-    stats.pilotCounts = run.counts();
+    stats.pilotCounts += run.counts();
     const double samples = settings.seconds * kCoarseSample * film.samples / stats.pilotSeconds;
     if (settings.seconds > 0 && samples < kLeastForPilot) {
       setup.input.perPixel = nullptr, stats.allocated = false;
@@ -402,14 +421,43 @@ FilmBuffer renderWith(const BuiltScene& built, const RenderSettings& settings, S
   const Clocks time = run.clocks();
   stats.renderSeconds = time.wall - stats.pilotSeconds;
   stats.renderCpuSeconds = time.cpu - stats.pilotCpuSeconds;
-  stats.counts = run.counts();
+  stats.counts = wayPilot;
+  stats.counts += run.counts();
   stats.error = run.error();
   return buffer;
 }
 
+// Of a bidirectional render whose allocation is `auto`, with numbers that a pilot chose: where paths from the lights do
+// not pay, those of paths from the camera alone.
+template <size_t K>
+RenderSettings withWays(const BuiltScene& built, const RenderSettings& settings, Statistics& stats,
+                        const RenderObserver& observer) {
+  RenderSettings chosen = settings;
+  if (!settings.bidirectional() || settings.allocation != Allocation::kAuto) return chosen;
+  const Clocks start{wallSeconds(), cpuSeconds()};
+  RenderSetup<K> setup(built, settings);
+  if ((setup.needs & kNeedsConnections) == 0) return chosen;
+  setup.drawFrom({SamplerType::kIndependent, ~settings.seed, 1});
+  const auto stopped = [&] { return observer.stop != nullptr && observer.stop->load() != Stop::kNo; };
+  const WayChoice choice = chooseWays<K>(setup, settings.open() ? kUsualSamples : countOf(settings), stopped);
+  if (choice.counts.paths > 0) {
+    chosen.samplesPerHit = setup.samplesAtHit(choice.counts);
+    chosen.fromLights.paths = choice.counts.paths, chosen.fromLights.connections = choice.counts.connections;
+    chosen.fromLights.laterConnections = choice.counts.laterConnections;
+  } else {
+    chosen.integrator = Integrator::kPath;
+    stats.leftOut.emplace_back("no paths from lights: a pilot says that paths from the camera alone are sooner");
+  }
+  const Clocks time = Clocks{wallSeconds(), cpuSeconds()} - start;
+  stats.wayGain = choice.gain, stats.wayPilot = time, stats.pilotCounts = choice.pilot;
+  return chosen;
+}
+
 FilmBuffer renderInArena(const BuiltScene& built, const RenderSettings& settings, Statistics& stats,
                          const RenderObserver& observer) {
-  return withTechniques(built.lobes(), [&](auto k) { return renderWith<k()>(built, settings, stats, observer); });
+  return withTechniques(built.lobes(), [&](auto k) {
+    return renderWith<k()>(built, withWays<k()>(built, settings, stats, observer), stats, observer);
+  });
 }
 
 }  // namespace

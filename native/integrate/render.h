@@ -21,6 +21,13 @@ namespace wardmis {
 // light is smooth, these are most of the error.
 double pilotApart(const RenderSettings&);
 
+struct Clocks {
+  double wall = 0, cpu = 0;  // seconds; cpu: of all threads
+
+  Clocks operator-(const Clocks& b) const { return {wall - b.wall, cpu - b.cpu}; }
+  Clocks& operator+=(const Clocks& b) { return *this = {wall + b.wall, cpu + b.cpu}; }
+};
+
 struct Statistics {
   double buildSeconds = 0, pilotSeconds = 0, renderSeconds = 0;  // wall; render excludes the pilot
   double pilotCpuSeconds = 0, renderCpuSeconds = 0;
@@ -39,14 +46,17 @@ struct Statistics {
   float costOfHit = 0;                      // a share of a hit's own, in the same unit
   double pixelGain = 1;     // of error x time, that unequal samples of pixels are to bring; 1: all have as many
   double hiddenLights = 1;  // LightVisibility::learn(), where lights are drawn by it; 1: they are not
+  // Of paths from the lights; none: there are none.
+  struct WaysTaken {
+    int samplesAtHit = 0;
+    double paths = 0;  // for each camera sample of a pixel
+    int connections = 0, laterConnections = 0;
+    bool film = false;
+  };
+  std::optional<WaysTaken> ways;
+  double wayGain = 1;  // of second moment x cost, that chosen numbers of ways have over paths from the camera alone
+  Clocks wayPilot;     // what choosing them took
   std::optional<EstimatedError> error;  // the last estimate, where an error is aimed at
-};
-
-struct Clocks {
-  double wall = 0, cpu = 0;  // seconds; cpu: of all threads
-
-  Clocks operator-(const Clocks& b) const { return {wall - b.wall, cpu - b.cpu}; }
-  Clocks& operator+=(const Clocks& b) { return *this = {wall + b.wall, cpu + b.cpu}; }
 };
 
 struct Progress {

@@ -15,12 +15,16 @@ PathLimits RenderSettings::limits() const {
 }
 
 bool RenderSettings::sharesPixels() const {
-  if (part || pixels == PixelSamples::kEven) return false;  // parts of an image do not know of each other
+  if (part || pixels == PixelSamples::kEven || bidirectional())
+    return false;  // parts of an image do not know of each other
   if (!open() && PixelSurvey::samplesFor(spp) == 0) return false;
   return pixels == PixelSamples::kByError || (allocation == Allocation::kAuto && sampler != SamplerType::kStratified);
 }
 
-std::string_view name(Integrator i) { return i == Integrator::kDirect ? "direct" : "path"; }
+std::string_view name(Integrator i) {
+  constexpr std::string_view names[] = {"direct", "path", "bidirectional"};
+  return names[static_cast<int>(i)];
+}
 std::string_view name(SamplerType s) {
   constexpr std::string_view names[] = {"independent", "stratified", "sobol"};
   return names[static_cast<int>(s)];

@@ -15,7 +15,7 @@ namespace wardmis {
 
 inline constexpr int kLongestPath = 1024;  // surface hits, and bounces of a kind
 
-enum class Integrator : uint8_t { kDirect, kPath };
+enum class Integrator : uint8_t { kDirect, kPath, kBidirectional };
 std::string_view name(Integrator);
 std::string_view name(SamplerType);
 std::string_view name(FilterType);
@@ -42,6 +42,13 @@ struct SampleRange {
   uint32_t count() const { return to - from; }
 };
 
+// Paths from the lights of a bidirectional render.
+struct FromLights {
+  double paths = 1;                           // for each camera sample of a pixel
+  int connections = 1, laterConnections = 1;  // with their vertices, of the first vertex of a camera path and of others
+  bool film = true;                           // they are traced to the film, too
+};
+
 struct RenderSettings {
   bool data = false, light = false;  // what DataPixel and LightPixel have is wanted
   Allocation allocation = Allocation::kAuto;
@@ -55,6 +62,7 @@ struct RenderSettings {
   // > 0: stop as soon as the image is told to be better, at the latest after all samples or the time.
   double targetError = 0;
   std::optional<SampleRange> part;  // of the spp samples these alone; not with a time, nor measured costs
+  FromLights fromLights;
   int samplesPerHit = 6;
   uint32_t pilotSpp = 4;  // camera samples of the pilot per pixel, of `auto` per 2 x 2 pixels
   float minFraction = 0.1f;
@@ -70,11 +78,15 @@ struct RenderSettings {
   bool generalKernel = false;
 
   PathLimits limits() const;
+  bool bidirectional() const { return integrator == Integrator::kBidirectional; }  // paths, too, where the scene allows
   // Whether the number of its samples is not known before.
   bool open() const { return seconds > 0 || targetError > 0; }
   SampleRange range() const { return part.value_or(SampleRange{0, spp}); }  // without a limit of time
   bool sharesPixels() const;                                                // unevenly, if that pays
-  Weights weightRule() const { return weights.value_or(paperWeights(allocation)); }
+  // Of ways to make a path, balance weights, unless others are asked for.
+  Weights weightRule() const {
+    return weights.value_or(bidirectional() ? Weights::kBalance : paperWeights(allocation));
+  }
 };
 
 }  // namespace wardmis

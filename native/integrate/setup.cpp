@@ -12,6 +12,7 @@
 #include <chrono>
 #include <ctime>
 
+#include "integrate/light_tracer.h"
 #include "math/error.h"
 
 namespace wardmis {
@@ -83,6 +84,15 @@ SampleCost<K> givenCost(const GivenCost& given) {
   return cost;
 }
 
+// Ways that cover each other share one integral.
+Integrand integrandOf(const RenderSettings& s, uint32_t needs) {
+  return (needs & kNeedsConnections) != 0 ? Integrand::kJoint : s.integrand;
+}
+Weights weightsOf(const RenderSettings& s, uint32_t needs) {
+  if ((needs & kNeedsConnections) == 0) return s.weightRule();
+  return s.weights == Weights::kPower ? Weights::kPower : Weights::kBalance;
+}
+
 std::optional<RenderScene> alone(const BuiltScene& built, const RenderScene& world, uint32_t needs) {
   if (!built.catchers) return std::nullopt;
   const BuiltScene::Catchers& c = *built.catchers;
@@ -136,13 +146,16 @@ std::vector<std::string> BuiltScene::techniqueNames() const {
 }
 
 uint32_t needs(const BuiltScene& built, const RenderSettings& s) {
-  uint32_t n = wardmis::needs(built.scene, built.geometry, built.emitters, s.integrand == Integrand::kJoint);
+  const bool connects = s.bidirectional() && noLightPaths(built.scene, built.geometry, built.emitters, s).empty();
+  uint32_t n =
+      wardmis::needs(built.scene, built.geometry, built.emitters, connects || s.integrand == Integrand::kJoint);
   if (s.limits().bounce((n & kNeedsLobes) != 0)) n |= kNeedsBounces;
-  return n;
+  return connects ? n | kNeedsConnections : n;
 }
 
 uint32_t kernelNeeds(const BuiltScene& built, const RenderSettings& s) {
-  const uint32_t n = needs(built, s) & kKernelNeeds;
+  const uint32_t all = needs(built, s), n = all & kKernelNeeds;
+  if ((all & kNeedsConnections) != 0) return kKernelNeeds | kNeedsConnections;
   return s.generalKernel ? n | (kKernelNeeds & ~uint32_t{kNeedsLobes}) : n;
 }
 
@@ -170,10 +183,10 @@ RenderSetup<K>::RenderSetup(const BuiltScene& built, const RenderSettings& s)
             filter_,
             sampler_,
             nullptr,
-            equalFractions<K>(s.integrand, techniques),
+            equalFractions<K>(integrandOf(s, needs), techniques),
             s.allocation,
-            s.integrand,
-            s.weightRule(),
+            integrandOf(s, needs),
+            weightsOf(s, needs),
             candidates_,
             givenCost<K>(s.cost),
             s.samplesPerHit,
@@ -182,12 +195,67 @@ RenderSetup<K>::RenderSetup(const BuiltScene& built, const RenderSettings& s)
             negativeLight(built.scene) ? -3.4e38f : 0.0f,
             built.scene.film.x0,
             built.scene.film.y0},
-      kernel(tileKernel<K>(kernelNeeds)) {}
+      kernel(tileKernel<K>(kernelNeeds)) {
+  if ((needs & kNeedsConnections) == 0) return;
+  emission_.emplace(built.emitters, built.geometry);
+  light_.emplace(LightPaths{*emission_, {input.weights == Weights::kPower}});
+  const PathLimits& limits = input.limits;
+  light_->countsBounces = *std::min_element(limits.bounces.begin(), limits.bounces.end()) < limits.depth;
+  input.light = &*light_;
+  light_->toFilm = false;
+  light_->verticesPerPath = verticesPerPath<K>(input);
+  light_->toFilm = s.fromLights.film && camera_.seesBack();
+  samplesPerHit_ = s.samplesPerHit;
+  useWays({1, s.fromLights.paths, s.fromLights.connections, s.fromLights.laterConnections});
+}
+
+template <size_t K>
+void RenderSetup<K>::setPaths(double perPixel, int side) {
+  const Film& f = world_.scene.film;
+  const double pixels = double(pixelsAcross(f.x1 - f.x0, side)) * pixelsAcross(f.y1 - f.y0, side);
+  light_->paths = static_cast<uint32_t>(std::max(std::round(perPixel * pixels), 1.0));
+  light_->kept = std::min(light_->paths, kMostKeptPaths);
+  light_->pixelsPerRay = double(side) * side;
+  tracedLight_.reset();
+}
+
+template <size_t K>
+int RenderSetup<K>::samplesAtHit(const WayCounts& counts) const {
+  return std::max(1, static_cast<int>(std::round(counts.atHit * samplesPerHit_)));
+}
+
+template <size_t K>
+void RenderSetup<K>::useWays(const WayCounts& counts) {
+  input.samplesPerHit = samplesAtHit(counts);
+  light_->connections = counts.connections, light_->laterConnections = counts.laterConnections;
+  setPaths(counts.paths, 1);
+}
+
+template <size_t K>
+void RenderSetup<K>::beginWayPilot(const WayCandidates& candidates, std::vector<WaySums>& sums, int side) {
+  useWays({1, 1, 1, 1});
+  setPaths(1, side);
+  input.side = side, input.light = &*light_;
+  input.wayCandidates = &candidates, input.waySums = &sums;
+}
+
+template <size_t K>
+void RenderSetup<K>::endWayPilot() {
+  input.side = 1;
+  input.wayCandidates = nullptr, input.waySums = nullptr;
+}
+
+template <size_t K>
+void RenderSetup<K>::traceLightOf(uint32_t sample, const std::function<Counts&()>& counts) {
+  if (input.light == nullptr || tracedLight_ == sample) return;
+  traceLight<K>(input, sample, *light_, counts);
+  tracedLight_ = sample;
+}
 
 template <size_t K>
 FilmBuffer RenderSetup<K>::film(int side) const {
   const Film& f = world_.scene.film;
-  FilmBuffer film((f.x1 - f.x0 + side - 1) / side, (f.y1 - f.y0 + side - 1) / side, K);
+  FilmBuffer film(pixelsAcross(f.x1 - f.x0, side), pixelsAcross(f.y1 - f.y0, side), K);
   film.transparent = f.transparent;
   return film;
 }

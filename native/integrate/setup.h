@@ -11,6 +11,7 @@
 
 #include "integrate/kernel.h"
 #include "integrate/render.h"
+#include "mis/ways.h"
 #include "world/environment.h"
 
 namespace wardmis {
@@ -54,6 +55,15 @@ struct RenderSetup {
   // Instead of the settings' own points.
   void drawFrom(const Sampler& sampler) { sampler_ = sampler; }
   // Light samples tell `learning` whether they are seen, and are drawn by what `lights` knows of that; null: neither.
+  // Paths from the lights, where the integrator wants them and the scene allows; with these none while `on` is false.
+  void connectLights(bool on) { input.light = on && light_ ? &*light_ : nullptr; }
+  // A pilot that chooses how many there are: of a film with larger pixels, one path for each of these.
+  void beginWayPilot(const WayCandidates& candidates, std::vector<WaySums>& sums, int side);
+  void endWayPilot();
+  void useWays(const WayCounts& counts);
+  int samplesAtHit(const WayCounts& counts) const;
+  // Those of a camera sample, unless they are there.
+  void traceLightOf(uint32_t sample, const std::function<Counts&()>& counts);
   void drawLights(const LightVisibility* lights, LightVisibility* learning) {
     world_.lights = lights, world_.learning = learning;
   }
@@ -69,6 +79,12 @@ struct RenderSetup {
   PixelFilter filter_;
   Sampler sampler_;
   CandidateLists<K> candidates_;
+  std::optional<LightEmission> emission_;
+  std::optional<LightPaths> light_;
+  std::optional<uint32_t> tracedLight_;  // the camera sample whose paths are there
+  int samplesPerHit_ = 0;                // that are asked for
+
+  void setPaths(double perPixel, int side);
 
  public:
   KernelInput<K> input;
@@ -83,6 +99,8 @@ void renderTiles(const RenderSetup<K>& setup, FilmBuffer& film, double samples, 
                  const std::function<Counts&()>& counts, std::atomic<int>& tilesDone,
                  const std::function<bool()>& discard);
 int tilesOf(const FilmBuffer& film);
+// Of a film whose pixels are squares of `side` pixels of the image, along an edge of so many of these.
+constexpr int pixelsAcross(int pixels, int side) { return (pixels + side - 1) / side; }
 
 // Limits the threads of what runs in it.
 void withThreads(int threads, const std::function<void()>& work);

@@ -125,11 +125,12 @@ struct PixelSums {
   PilotPixel* pilot = nullptr;
   HitMoments<K>* moments = nullptr;
   CandidateSums<K>* candidates = nullptr;
+  WaySums* ways = nullptr;
 };
 
 // Radiance along one camera ray of a world. catcher: null where it is not wanted.
 template <uint32_t N, size_t K>
-Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& camera, uint32_t pixelKey,
+Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& camera, Vec2f lens, uint32_t pixelKey,
                  uint32_t sample, const PixelFractions<K>* allocated, WholeFractions<K>& whole, const PixelSums<K>& to,
                  CatcherSample* catcher, Counts& counts) {
   Pixel& pixel = to.pixel;
@@ -210,6 +211,9 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
   if (to.candidates != nullptr) {  // the pilot of `auto`: each technique alike
     plan.samples = kSets * std::popcount(mask);
     plan.fractions = restrict<K>({}, mask);
+  } else if constexpr ((N & kNeedsConnections) != 0) {
+    plan.samples = in.samplesPerHit;
+    plan.fractions = firstFractions<K>(in, s, mask);
   } else {
     plan.samples = own != nullptr ? own->samples : in.samplesPerHit;
     if (in.rule == Allocation::kAlbedo) [[unlikely]]
@@ -220,6 +224,26 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
   }
   plan.integrand = in.integrand;
   plan.weights = in.weights;
+  constexpr bool kConnects = (N & kNeedsConnections) != 0;
+  using MaybeVertex = std::conditional_t<kConnects, std::optional<CameraVertex>, std::nullopt_t>;
+  [[maybe_unused]] MaybeVertex first = std::nullopt;
+  [[maybe_unused]] std::conditional_t<kConnects, std::optional<CameraVertex::Notes>, std::nullopt_t> notes =
+      std::nullopt;
+  [[maybe_unused]] std::conditional_t<kConnects, std::optional<std::array<WayScatter, K>>, std::nullopt_t> scatter =
+      std::nullopt;
+  if constexpr (kConnects)
+    if (in.light != nullptr) {
+      const LightPaths& lights = *in.light;
+      const auto seen = in.camera.seen(x.position, lens, ray.path.time);
+      first.emplace(lights);
+      first->left = in.limits.bounces, first->depth = in.limits.depth;
+      first->before = first->throughput = seenThrough;
+      if (to.ways != nullptr) [[unlikely]]
+        first->notes = &notes.emplace(CameraVertex::Notes{*in.wayCandidates, *to.ways, scatter.emplace().data()});
+      if (seen) first->end = {kAtFilm, lights.power(lights.perPixel()), {}, lights.power(double(seen->importance))};
+      first->arrive(dot(x.geometric, x.wo), seen && detail::lightReaches(world, hit));
+      plan.camera = &*first;
+    }
   Continuations<K> more;
   const Counts::PerTechnique before = counts.samples;
   std::optional<HitRecord<K>> record;
@@ -236,6 +260,9 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
   sum += estimateHit<N, K>(world, in.sampler, x, plan, counts, record ? &*record : nullptr, more) * seenThrough;
   if (split != nullptr) [[unlikely]]
     addLight(light->direct, split->direct, seenThrough * exposure);
+  if constexpr (kConnects)
+    for (size_t t = 0; scatter && t < K; ++t)
+      (*scatter)[t].addTo(*to.ways, static_cast<int>(counts.samples[t] - before[t]));
   if (to.taken != nullptr)
     for (size_t i = 0; i < K; ++i) to.taken[i] += static_cast<uint32_t>(counts.samples[i] - before[i]);
   if constexpr ((N & kNeedsBounces) != 0) {
@@ -249,9 +276,17 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
       Continuation<K>& c = more.list[k];
       if (!goesOn(c, mean, visit.choice(Dimensions<K>::kRoulette, static_cast<uint32_t>(k)))) continue;
       const uint64_t rays = counts.allRays();
+      CameraVertex* onward = nullptr;
+      [[maybe_unused]] MaybeVertex next = std::nullopt;
+      if constexpr (kConnects)
+        if (first) {
+          onward = &next.emplace(first->light);
+          next->end = first->next[k], next->depth = first->depth;
+          next->before = seenThrough, next->notes = first->notes;
+        }
       const Rgb value = followPath<N, K>(world, in.sampler, pixelKey,
                                          sample * static_cast<uint32_t>(plan.samples) + static_cast<uint32_t>(k), c,
-                                         in.limits, counts);
+                                         in.limits, onward, counts);
       sum += value * seenThrough;
       counts.following[c.technique] += counts.allRays() - rays;
       if (split != nullptr) [[unlikely]]
@@ -289,6 +324,14 @@ template <class Again>
                        Rgb{part(through.x, unseen.x), part(through.y, unseen.y), part(through.z, unseen.z)});
 }
 
+// What paths from the lights have brought to a pixel.
+template <uint32_t N, size_t K>
+Rgb lightToFilm(const KernelInput<K>& in, size_t pixel) {
+  if constexpr ((N & kNeedsConnections) != 0)
+    if (in.light != nullptr && !in.light->film.empty()) return in.light->film[pixel];
+  return {0, 0, 0};
+}
+
 template <uint32_t N, size_t K>
 void renderTile(const KernelInput<K>& in, const Tile& tile, FilmBuffer& film, Pilot<K>* pilot, Counts& counts) {
   const float exposure = in.scene.scene.film.exposure, height = static_cast<float>(in.scene.scene.film.height);
@@ -310,6 +353,7 @@ void renderTile(const KernelInput<K>& in, const Tile& tile, FilmBuffer& film, Pi
         if (!pilot->moments.empty()) sums.moments = &pilot->moments[index];
         if (!pilot->candidates.empty()) sums.candidates = &pilot->candidates[index];
       }
+      if (in.waySums != nullptr) sums.ways = &(*in.waySums)[index];
       const uint64_t raysBefore = film.rays.empty() ? 0 : counts.allRays();
       const uint32_t end = film.shares.count(index, tile.last);
       for (uint32_t s = film.shares.count(index, tile.first); s < end; ++s) {
@@ -328,12 +372,13 @@ void renderTile(const KernelInput<K>& in, const Tile& tile, FilmBuffer& film, Pi
             noteFirst<N, K>(in.scene, in.camera, central, combine(key, kFirstSample), pixel, sums.data);
         if (!(ray.tMax > 0)) [[unlikely]] {
           pixel.alpha.add({1});  // black, and no hole in the picture, as Cycles has it
-          pixel.add({0, 0, 0});
+          pixel.add(lightToFilm<N, K>(in, index) * exposure);
           continue;
         }
         if (film.catchers.empty()) [[likely]] {
-          const Rgb value =
-              cameraSample<N, K>(in, in.scene, ray, key, s, allocated, whole, sums, nullptr, counts) * exposure;
+          Rgb value = cameraSample<N, K>(in, in.scene, ray, lens, key, s, allocated, whole, sums, nullptr, counts);
+          if constexpr ((N & kNeedsConnections) != 0) value += lightToFilm<N, K>(in, index);
+          value = value * exposure;
           if (counts.rare.admit(value, in.least)) pixel.add(value);
           continue;
         }
@@ -341,13 +386,13 @@ void renderTile(const KernelInput<K>& in, const Tile& tile, FilmBuffer& film, Pi
         Pixel again = pixel;
         CatcherSample seen;
         const Rgb value =
-            cameraSample<N, K>(in, in.scene, ray, key, s, allocated, whole, sums, &seen, counts) * exposure;
+            cameraSample<N, K>(in, in.scene, ray, lens, key, s, allocated, whole, sums, &seen, counts) * exposure;
         if (!counts.rare.admit(value, in.least)) continue;
         pixel.add(value);
         addCatchers(film.catchers[index], value, exposure, pixel.alpha[0] - again.alpha[0], seen,
                     [&](CatcherSample& alone) {
-                      return cameraSample<N, K>(in, *in.catchers, ray, key, s, allocated, whole, PixelSums<K>{again},
-                                                &alone, counts);
+                      return cameraSample<N, K>(in, *in.catchers, ray, lens, key, s, allocated, whole,
+                                                PixelSums<K>{again}, &alone, counts);
                     });
       }
       if (!film.rays.empty()) film.rays[index] += static_cast<uint32_t>(counts.allRays() - raysBefore);

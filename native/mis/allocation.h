@@ -119,6 +119,15 @@ struct Mixture {
     return rule <= Weights::kNonbalance ? aOverN[i] / sum : scaleOfHeuristic(i, p, ap);
   }
 
+  // The same where there are more ways to make the sample than these techniques, of which `others` is the sum of
+  // densities or, of the power heuristic, of their squares; of the two heuristics alone.
+  float scale(size_t i, const Fractions<K>& p, TechniqueMask used, double others) const {
+    const float alone = scale(i, p, used);
+    if (!(others > 0)) return alone;
+    const double own = rule == Weights::kPower ? double(n[i]) * double(p[i]) : 1;
+    return static_cast<float>(double(alone) / (1 + double(alone) * others / own));
+  }
+
  private:
   // The heuristics that give more to the larger densities; ap: a_k p_k.
   float scaleOfHeuristic(size_t i, const Fractions<K>& p, const Fractions<K>& ap) const {

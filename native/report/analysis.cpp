@@ -464,6 +464,8 @@ class Reporter {
       bySamples[names[t]] = double(sum.samples[t]) / n;
       byRays[t + 1 == names.size() ? "shadow" : names[t]] = double(sum.rays[t]) / n;
     }
+    if (sum.lightRays > 0)
+      byRays["light"] = double(sum.lightRays) / n, byRays["connections"] = double(sum.connections) / n;
     return {{"ns_per_sample", samples > 0 ? json(1e9 * cpu / samples) : json()},
             {"ns_per_path", 1e9 * cpu / double(sum.cameraRays)},
             {"rays_per_path", rays / double(sum.cameraRays)},

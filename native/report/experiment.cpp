@@ -60,6 +60,8 @@ json toJson(const Run& run) {
           {"samples", n.samples},
           {"camera_rays", n.cameraRays},
           {"rays", n.rays},
+          {"light_rays", n.lightRays},
+          {"connections", n.connections},
           {"dropped", {n.rare.nan, n.rare.infinite, n.rare.negative}},
           {"checkpoints", std::move(checkpoints)}};
 }
@@ -84,6 +86,8 @@ Run runFromJson(const json& j) {
   j.at("samples").get_to(run.counts.samples);
   run.counts.cameraRays = j.at("camera_rays");
   j.at("rays").get_to(run.counts.rays);
+  run.counts.lightRays = j.value("light_rays", uint64_t{0}),
+  run.counts.connections = j.value("connections", uint64_t{0});
   const auto dropped = j.at("dropped").get<std::array<uint64_t, 3>>();
   run.counts.rare.nan = dropped[0], run.counts.rare.infinite = dropped[1], run.counts.rare.negative = dropped[2];
   for (const json& c : j.at("checkpoints")) {

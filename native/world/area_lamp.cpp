@@ -220,6 +220,32 @@ LampSample AreaLamp::sample(Vec3f from, Vec2f u) const {
   return s;
 }
 
+AreaLamp::Emitted AreaLamp::emit(Vec2f place, Vec2f u) const {
+  Emitted e;
+  if (!(area_ > 0)) return e;
+  const Vec2f ab = ellipse_ ? toDisk(place) : Vec2f{2 * place.x - 1, 2 * place.y - 1};
+  e.origin = at(ab.x, ab.y);
+  if (emitsCone()) {
+    const Framef f = Framef::around(axis_);
+    const Vec2f d = toConeOverDisk(u);
+    e.direction = normalize(axis_ + (f.x * d.x + f.y * d.y) * spreadTan_);
+  } else {
+    e.direction = Framef::around(normal_).toWorld(toCosineHemisphere(u));
+  }
+  e.pdf = emittedDensity(e.direction);
+  return e;
+}
+
+float AreaLamp::emittedDensity(Vec3f d) const {
+  const float plane = cosine(d);
+  if (!(plane > 0) || !(area_ > 0)) return 0;
+  if (!emitsCone()) return 1 / (kPif * area_);
+  const float axis = dot(d, axis_);
+  if (!(axis > 0)) return 0;
+  const float disk = std::max(0.0f, 1 - tangent(d) / spreadTan_) * 3 / (kPif * spreadTan_ * spreadTan_);
+  return disk / (axis * axis * axis * plane * area_);  // the disk's at distance 1, per solid angle
+}
+
 // Per area, of the cone over the disk of radius r: 3 (1 - x/r)/(pi r^2) at the distance x from its middle.
 float AreaLamp::coneDensity(const Part& part, Vec3f d) const {
   const float x = tangent(-d) / spreadTan_;

@@ -31,6 +31,14 @@ class AreaLamp {
   // What its radiance is multiplied by in the unit direction d, which leaves it.
   float profile(Vec3f d) const;
 
+  // A ray of its light: from an even place, in a direction as the light is spread.
+  struct Emitted {
+    Vec3f origin, direction;  // unit
+    float pdf = 0;            // per m^2 across the ray and sr; 0: none
+  };
+  Emitted emit(Vec2f place, Vec2f u) const;
+  float emittedDensity(Vec3f d) const;  // of those that leave in the unit direction d
+
   LampSample sample(Vec3f from, Vec2f u) const;
   // Where a ray with the unit direction d meets it; 0: nowhere.
   float meet(Vec3f from, Vec3f d) const;
@@ -52,6 +60,8 @@ class AreaLamp {
   Part seen(Vec3f from) const;
   void narrow(Part& part) const;
   float coneDensity(const Part& part, Vec3f d) const;
+  // Whether rays are spread as the profile is, and not as the cosine: within 45 degrees.
+  bool emitsCone() const { return spread_ && spreadTan_ <= 1; }
   Vec2f coordinates(Vec3f fromCenter) const { return {dot(fromCenter, dualX_), dot(fromCenter, dualY_)}; }
   bool holds(Vec2f ab) const;
   float tangent(Vec3f d) const;  // of the angle between d and the axis, which is below 90 degrees

@@ -60,7 +60,7 @@ LightBounds Emitters::boundsOf(const Lamp& lamp, const Light& light) {
     default:
       break;
   }
-  if (lamp.spot && isEven(light.toWorld)) {
+  if (lamp.spot && lamp.even) {
     b.axis = -normalize(light.toWorld.z);
     b.cosO = lamp.cosHalf - 1e-4f, b.cosE = 0.9999f;
   }
@@ -102,6 +102,7 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Env
           l.cosHalf = std::cos(0.5f * light.angle);
           l.blend = light.blend;
           l.toLocal = light.toWorld;
+          l.even = isEven(light.toWorld);
         }
         break;
       }
@@ -191,6 +192,8 @@ Emitters::Emitters(const Scene& scene, Geometry& geometry, const std::vector<Env
   triangles_ = emissive_.size();
   shared_ |= triangles_ > 0;
   tree_ = LightTree(bounds);
+  powers_.reserve(bounds.size());
+  for (const LightBounds& b : bounds) powers_.push_back(b.power);
   const bool evenly = std::ranges::any_of(
       scene.materials, [](const Material& m) { return !m.closures.empty() && m.closures.front().version == 3; });
   if (evenly) {  // half of its samples are of lamps, where there are triangles, too
@@ -293,17 +296,30 @@ void Emitters::look(LightSample& s, Vec3f from, int bounces) const {
   s.sky.sky = nullptr;
 }
 
+// The radiance of a triangle's point, by the weights of its second and third corner.
+Rgb Emitters::emitted(const Triangle& e, float u, float v, Vec3f from, int bounces, float time) const {
+  const Shape& shape = geometry_.shapes[e.shape];
+  const ColorInput& emission = scene_.materials[static_cast<size_t>(shape.material)].emission;
+  if (emission.result >= 0)
+    return emissionAt(scene_, geometry_.placements[e.placement], shape, e.triangle, u, v, from, bounces, time);
+  if (emission.texture.texture < 0 || shape.part->uvs.empty()) return emission.value;
+  const uint32_t* i = shape.indices + 3 * size_t{e.triangle};
+  const Vec2f a = shape.part->uvs[i[0]], b = shape.part->uvs[i[1]], c = shape.part->uvs[i[2]];
+  const float w = 1 - u - v;
+  return emission.value *
+         sampleRgb(scene_, emission.texture, {w * a.x + u * b.x + v * c.x, w * a.y + u * b.y + v * c.y});
+}
+
 LightSample Emitters::sample(Vec3f from, const LightChoice& choice, int bounces, float time) const {
   LightSample s;
   if (!(choice.probability > 0)) return s;
-  s.entry = choice.entry;
+  s.entry = choice.entry, s.emitter = choice.emitter;
   const uint32_t index = choice.emitter;
   const Vec2f u{toCoordinate(choice.point.x), choice.point.y};
   if (index >= lamps_.size()) {
     const Triangle& e = emissive_[index - lamps_.size()];
     const Placement& p = geometry_.placements[e.placement];
-    const Shape& shape = geometry_.shapes[e.shape];
-    const Corners corner = Geometry::corners(p, shape, e.triangle, time);
+    const Corners corner = Geometry::corners(p, geometry_.shapes[e.shape], e.triangle, time);
     const Vec3f a = corner[0], ab = corner[1] - a, ac = corner[2] - a;
     const Vec2f b = toTriangle(u);
     const Vec3f to = (a - from) + ab * b.x + ac * b.y;
@@ -316,17 +332,7 @@ LightSample Emitters::sample(Vec3f from, const LightChoice& choice, int bounces,
     if (!(cosArea > 0)) return s;
     s.pdf = choice.probability * t2 / cosArea;
     s.counted = evenArea_ > 0 ? evenArea_ * length(n) * 0.5f * t2 / cosArea : s.pdf;
-    const ColorInput& emission = scene_.materials[static_cast<size_t>(shape.material)].emission;
-    s.radiance = emission.value;
-    if (emission.result >= 0) {
-      s.radiance = emissionAt(scene_, p, shape, e.triangle, b.x, b.y, from, bounces, time);
-    } else if (emission.texture.texture >= 0 && !shape.part->uvs.empty()) {
-      const uint32_t* i = shape.indices + 3 * size_t{e.triangle};
-      const Vec2f t0 = shape.part->uvs[i[0]], t1 = shape.part->uvs[i[1]], t2uv = shape.part->uvs[i[2]];
-      const float c = 1 - b.x - b.y;
-      s.radiance *= sampleRgb(scene_, emission.texture,
-                              {c * t0.x + b.x * t1.x + b.y * t2uv.x, c * t0.y + b.x * t1.y + b.y * t2uv.y});
-    }
+    s.radiance = emitted(e, b.x, b.y, from, bounces, time);
     s.visibility = p.visibility;
     s.on = {e.placement, e.shape, e.triangle};
     return s;
@@ -383,13 +389,21 @@ LightSample Emitters::sample(Vec3f from, const LightChoice& choice, int bounces,
   return s;
 }
 
+// Whether the ray meets a lamp that it may meet.
 bool Emitters::meets(uint32_t index, const Ray& ray, float tMax, int bounces, const LightView* view,
                      const Environment::Place& ahead, EmitterHit& hit) const {
   const Lamp& lamp = lamps_[index];
-  const Vec3f d = ray.direction;
   // where two lobes share a technique, both get what any of its rays meets: who sees it is the estimator's to say
   const int seers = ray.kind == kSeenByCamera ? kSeenByCamera : kSeenBySurfaces;
   if ((lamp.visibility & seers) == 0 || (lamp.exclusive && ray.kind != kSeenByCamera)) return false;
+  return shows(index, ray, tMax, bounces, view, ahead, hit);
+}
+
+// Whether it is there.
+bool Emitters::shows(uint32_t index, const Ray& ray, float tMax, int bounces, const LightView* view,
+                     const Environment::Place& ahead, EmitterHit& hit) const {
+  const Lamp& lamp = lamps_[index];
+  const Vec3f d = ray.direction;
   float pdf = 0, t = kFar;
   const auto met = [&](const LampHit& surface) {
     t = surface.t, pdf = surface.pdf;
@@ -417,7 +431,7 @@ bool Emitters::meets(uint32_t index, const Ray& ray, float tMax, int bounces, co
     }
     case Kind::kEnvironment: {
       const Environment& environment = environments_[lamp.environment];
-      const SkyRay from{ray.origin, seers == kSeenByCamera, bounces};
+      const SkyRay from{ray.origin, ray.kind == kSeenByCamera, bounces};
       if (from.camera) {  // who does not ask for a density
         hit.radiance = environment.radiance(d, from);
         break;
@@ -434,8 +448,50 @@ bool Emitters::meets(uint32_t index, const Ray& ray, float tMax, int bounces, co
   hit.pdf = pdf > 0 && view != nullptr ? pdf * tree_.probability(*view, index) : 0;
   hit.counted = evenLamp_ > 0 && hit.pdf > 0 ? pdf * evenLamp_ : hit.pdf;
   hit.visibility = lamp.visibility;
-  hit.sky = lamp.kind == Kind::kEnvironment;
+  hit.sky = lamp.kind == Kind::kEnvironment, hit.emitter = index, hit.distance = t;
   return true;
+}
+
+LightSample Emitters::arriving(uint32_t emitter, const LightView* view, Vec3f at, Vec3f towards, float distance,
+                               int bounces, float time) const {
+  LightSample s;
+  s.direction = towards, s.distance = distance, s.emitter = emitter;
+  if (emitter >= lamps_.size()) {
+    const Triangle& e = emissive_[emitter - lamps_.size()];
+    const Placement& p = geometry_.placements[e.placement];
+    s.on = {e.placement, e.shape, e.triangle};
+    s.visibility = p.visibility;
+    const auto [a, b, c] = Geometry::corners(p, geometry_.shapes[e.shape], e.triangle, time);
+    const Vec3f n = cross(b - a, c - a), on = at + towards * distance - a;
+    const float n2 = dot(n, n), cosArea = std::abs(dot(towards, n)) * 0.5f;
+    if (!(n2 > 0) || !(cosArea > 0)) return s;
+    s.radiance = emitted(e, dot(cross(on, c - a), n) / n2, dot(cross(b - a, on), n) / n2, at, bounces, time);
+    const float byArea = distance * distance / cosArea;
+    s.pdf = view != nullptr ? tree_.probability(*view, emitter) * byArea : 0;
+    s.counted = evenArea_ > 0 ? evenArea_ * std::sqrt(n2) * 0.5f * byArea : s.pdf;
+    return s;
+  }
+  const Lamp& lamp = lamps_[emitter];
+  if (bounces > lamp.maxBounces) return s;
+  s.visibility = lamp.visibility, s.shadow = lamp.shadow, s.exclusive = lamp.exclusive;
+  Ray ray;
+  ray.origin = at, ray.direction = towards, ray.kind = kSeenByDiffuse;
+  EmitterHit hit;
+  const bool delta = lamp.kind == Kind::kDeltaPoint || (lamp.kind == Kind::kSun && lamp.sun.delta());
+  if (!delta) {
+    if (!shows(emitter, ray, kFar, bounces, view, {}, hit)) return s;
+    s.radiance = hit.radiance, s.pdf = hit.pdf, s.counted = hit.counted;
+    return s;
+  }
+  const float probability = view != nullptr ? tree_.probability(*view, emitter) : 0;
+  if (lamp.kind == Kind::kDeltaPoint)
+    s.radiance = profile(lamp, -towards) / (distance * distance);
+  else
+    s.radiance = lamp.emitted;
+  if (lamp.light != nullptr) s.radiance *= factor(lamp, at, towards, distance, bounces);
+  s.pdf = probability;
+  s.counted = evenLamp_ > 0 && probability > 0 ? evenLamp_ : probability;
+  return s;
 }
 
 Emitters::Densities Emitters::trianglePdf(const LightView& view, const Placement& p, const Hit& hit, Vec3f direction,
@@ -448,7 +504,7 @@ Emitters::Densities Emitters::trianglePdf(const LightView& view, const Placement
   if (!(cosArea > 0)) return {};
   const auto emitter = static_cast<uint32_t>(lamps_.size()) + p.firstEmitter + shape.emitterOffset + hit.triangle;
   const float byArea = hit.t * hit.t / cosArea, pdf = tree_.probability(view, emitter) * byArea;
-  return {pdf, evenArea_ > 0 ? evenArea_ * length(n) * 0.5f * byArea : pdf};
+  return {pdf, evenArea_ > 0 ? evenArea_ * length(n) * 0.5f * byArea : pdf, emitter};
 }
 
 }  // namespace wardmis

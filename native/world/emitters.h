@@ -27,7 +27,8 @@ struct LightSample {
   bool exclusive = false;  // no other technique meets this emitter: a delta light, or one without shadows
   bool shadow = true;      // occluders count
   uint32_t entry = 0;      // of the tree that it was drawn from
-  PrimitiveId on;          // the triangle, which is not an occluder itself
+  uint32_t emitter = 0;
+  PrimitiveId on;  // the triangle, which is not an occluder itself
   uint8_t visibility = kSeenByAll;
 };
 
@@ -48,9 +49,13 @@ struct EmitterHit {
   float counted = 0;  // as of a LightSample
   uint8_t visibility = kSeenByAll;
   bool sky = false;  // a world's, else a light's
+  uint32_t emitter = 0;
+  float distance = 0;
 };
 
 class Emitters {
+  friend class LightEmission;
+
  public:
   // Fills Placement::firstEmitter. catchersAlone: what lights the world of Geometry's shadow catchers.
   Emitters(const Scene& scene, Geometry& geometry, const std::vector<Environment>& environments,
@@ -91,10 +96,20 @@ class Emitters {
   void along(const Ray& ray, float tMax, bool escaped, int bounces, const LightView* view, F&& f,
              const Environment::Place& ahead = {}) const;
 
+  // What an emitter sends to a point out of a unit direction in which it lies, if nothing is between; of a triangle
+  // also at which distance. It is of no density where it sends nothing. view: as for along().
+  LightSample arriving(uint32_t emitter, const LightView* view, Vec3f at, Vec3f towards, float distance,
+                       int bounces = 0, float time = kMiddle) const;
+
   // Of the emissive triangle that was hit, the densities that an EmitterHit has.
   struct Densities {
     float pdf = 0, counted = 0;
+    uint32_t emitter = 0;
   };
+  // Whether its light is seen after so many bounces.
+  bool reaches(uint32_t emitter, int bounces) const {
+    return emitter >= lamps_.size() || bounces <= lamps_[emitter].maxBounces;
+  }
   Densities trianglePdf(const LightView& view, const Placement& p, const Hit& hit, Vec3f direction,
                         float time = kMiddle) const;
 
@@ -116,6 +131,11 @@ class Emitters {
     int maxBounces = std::numeric_limits<int>::max();
     uint32_t environment = 0;      // its index
     const Light* light = nullptr;  // where it has a program
+
+    // The cone of directions in which a point or a sphere shines.
+    bool even = false;  // of spots: the light's node keeps angles
+    Vec3f axis() const { return spot && even ? -normalize(toLocal.z) : Vec3f{0, 0, 1}; }
+    float oneMinusCos() const { return spot && even ? std::min(1 - cosHalf + 1e-6f, 2.0f) : 2; }
   };
   // Where a lamp is and where it shines; its intensity is still to be set.
   static LightBounds boundsOf(const Lamp& lamp, const Light& light);
@@ -124,6 +144,8 @@ class Emitters {
   Rgb factor(const Lamp& lamp, Vec3f from, Vec3f d, float t, int bounces) const;
   // The mean of that over directions, by the light that goes there.
   double meanFactor(const Lamp& lamp, float distance) const;
+  bool shows(uint32_t index, const Ray& ray, float tMax, int bounces, const LightView* view,
+             const Environment::Place& ahead, EmitterHit& hit) const;
   bool meets(uint32_t index, const Ray& ray, float tMax, int bounces, const LightView* view,
              const Environment::Place& ahead, EmitterHit& hit) const;
 
@@ -135,6 +157,7 @@ class Emitters {
     uint32_t placement, shape, triangle;
   };
   std::vector<Triangle> emissive_;  // emitters lamps_.size() ...
+  Rgb emitted(const Triangle& e, float u, float v, Vec3f from, int bounces, float time) const;
   // A lamp somewhere, which a ray can meet, and a sphere around it, which most rays pass by.
   struct Finite {
     uint32_t lamp;  // its index
@@ -148,7 +171,8 @@ class Emitters {
       return d2 - along * along > radius2 + kRoundings * d2;
     }
   };
-  LightTree tree_;  // of lamps, then emissive triangles
+  LightTree tree_;             // of lamps, then emissive triangles
+  std::vector<float> powers_;  // likewise, in W, as LightBounds has them
   std::vector<Finite> finite_;
   static constexpr size_t kFew = 16;  // of so many each is asked
   SphereAccel spheres_;               // of finite_, where there are more

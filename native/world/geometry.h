@@ -64,6 +64,25 @@ struct Placement {
   }
 };
 
+// How far rounding may take a point of the triangle, as interpolated here and as a ray finds it, from its plane, whose
+// unit normal is n: a few roundings of the coordinates that the normal sees. Neither a constant, which is beyond the
+// far side of a scene of 1e-6 and nothing at 1e6, nor relative to the point, which may lie near the origin on a
+// triangle that reaches far. Zero where nothing rounds, as on a floor at z = 0.
+inline float clearance(const Placement& p, const Corners& corner, Vec3f n) {
+  constexpr float kRoundings = 0x1p-19f;
+  const auto reach = [](Vec3f a, Vec3f b, Vec3f c) {
+    const auto most = [](float x, float y, float z) { return std::max({std::abs(x), std::abs(y), std::abs(z)}); };
+    return Vec3f{most(a.x, b.x, c.x), most(a.y, b.y, c.y), most(a.z, b.z, c.z)};
+  };
+  const auto absolute = [](Vec3f v) { return Vec3f{std::abs(v.x), std::abs(v.y), std::abs(v.z)}; };
+  Vec3f r = reach(corner[0], corner[1], corner[2]);
+  if (!p.flat) {
+    const Affine& m = p.toWorld;
+    r = absolute(m.x) * r.x + absolute(m.y) * r.y + absolute(m.z) * r.z + absolute(m.t);
+  }
+  return kRoundings * dot(absolute(n), r);
+}
+
 // How the techniques of lobes are numbered: where there are enough, each class has numbers of its own on all surfaces.
 struct LobeNumbers {
   LobeCounts first{}, count{};  // of each class, if byClass

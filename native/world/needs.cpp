@@ -111,7 +111,8 @@ std::string describe(uint32_t n) {
                                                          {kNeedsLens, "lens"},
                                                          {kNeedsTangents, "tangents"},
                                                          {kNeedsLobes, "lobes"},
-                                                         {kNeedsTransparency, "transparency"}};
+                                                         {kNeedsTransparency, "transparency"},
+                                                         {kNeedsConnections, "paths from lights"}};
   std::string s;
   for (const auto& [bit, text] : kNames)
     if ((n & bit) != 0) s += (s.empty() ? "" : ", ") + std::string(text);

@@ -26,6 +26,7 @@ enum Needs : uint32_t {
   kNeedsTangents = 512,
   kNeedsTransparency = 1024,  // surfaces that let light straight through
   kNeedsPrograms = 2048,      // a branch, too
+  kNeedsConnections = 4096,   // paths from the lights, in kernels of their own
 };
 
 uint32_t needs(const Material& material);

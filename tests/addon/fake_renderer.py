@@ -87,7 +87,7 @@ def parse():
     parser.add_argument("--watch-stdin", action="store_true")
     parser.add_argument("--uncompressed", action="store_true")
     parser.add_argument("--passes", type=lambda names: names.split(","), default=[name.lower() for name in PASSES])
-    options = "allocation pixels weights integrand integrator time target-error samples-per-hit pilot-spp min-fraction max-depth max-diffuse max-glossy max-transmission max-transparent sampler seed threads progress"
+    options = "allocation pixels weights integrand integrator time target-error samples-per-hit pilot-spp min-fraction light-paths connections later-connections light-tracing max-depth max-diffuse max-glossy max-transmission max-transparent sampler seed threads progress"
     for option in options.split():
         parser.add_argument("--" + option)
     return parser.parse_args()

@@ -78,6 +78,8 @@ class Settings(unittest.TestCase):
             ("--samples-per-hit n", "samples_per_hit"),
             ("--pilot-spp P", "pilot_samples"),
             ("--min-fraction A", "min_fraction"),
+            ("--light-paths N", "light_paths"),
+            ("--connections K", "connections"),
             ("--max-depth D", "max_depth"),
             ("--max-diffuse B", "max_diffuse"),
             ("--max-glossy B", "max_glossy"),

@@ -232,6 +232,26 @@ class Arguments(RenderTest):
             self.assertEqual(arguments[arguments.index(option) + 1], setting, option)
         self.assertNotIn("--time", arguments)
 
+    def test_numbers_of_light_paths_go_with_their_integrator(self):
+        numbers = (
+            "s = scene.wardmis\ns.light_paths, s.connections, s.later_connections, s.light_tracing = 2.5, 3, 0, False\n"
+        )
+        run = self.run_blender(numbers + "s.integrator = 'bidirectional'\n")
+        words = run.calls[0]["arguments"]
+        expected = (
+            "--light-paths",
+            "2.5",
+            "--connections",
+            "3",
+            "--later-connections",
+            "0",
+            "--light-tracing",
+            "false",
+        )
+        for option, setting in zip(expected[::2], expected[1::2]):
+            self.assertEqual(words[words.index(option) + 1], setting, option)
+        self.assertNotIn("--light-paths", self.run_blender(numbers).calls[-1]["arguments"])
+
     def test_the_default_allocation_yields_to_other_weights(self):
         """By not being named: the command refuses it."""
         for weights, allocation in (("balance", ["--allocation", "auto"]), ("nonbalance", []), ("power", [])):

@@ -67,6 +67,8 @@ class Usage(CommandTest):
             ((*render, "--allocation", "fair"), "second-moment"),
             ((*render, "--sampler", "halton"), "sobol"),
             ((*render, "--allocation", "auto", "--weights", "nonbalance"), "standard-deviation"),
+            ((*render, "--integrator", "bidirectional", "--weights", "cutoff"), "balance and power"),
+            ((*render, "--light-paths", "65"), "--light-paths"),
             ((*render, "--samples-per-hit", "257"), "256"),
             ((*render, "--min-fraction", "0.9"), "--min-fraction"),
             ((*render, "--threads", "-1"), "--threads"),
@@ -304,6 +306,24 @@ class Image(CommandTest):
         self.assertAlmostEqual(
             stats["mean_variance"], luminance(exr.read(self.out).passes["Variance"]).mean(), delta=1e-6
         )
+
+    def test_statistics_of_paths_from_lights(self):
+        file = self.folder / "stats.json"
+        numbers = "--light-paths", "0.5", "--connections", "2", "--later-connections", "0"
+        bidirectional = "--integrator", "bidirectional", "--allocation", "equal"
+        self.render("--spp", "4", "--stats", file, *bidirectional, *numbers)
+        stats = json.loads(file.read_text())
+        self.assertEqual(set(stats["rays"]), {"camera", "lobe", "cosine", "shadow", "light", "connections", "total"})
+        self.assertEqual(sum(stats["rays"].values()), 2 * stats["rays"]["total"])
+        self.assertGreater(stats["rays"]["light"], 48 * 32 * 4 * 0.5)
+        self.assertGreater(stats["rays"]["connections"], 0)
+        expected = {"samples_at_hit": 6, "light_paths": 0.5, "connections": 2, "later_connections": 0}
+        self.assertEqual({**stats["ways"], **expected}, stats["ways"])
+        self.assertTrue(stats["ways"]["light_tracing"])
+        self.render("--spp", "4", "--stats", file, *bidirectional, "--light-paths", "0")
+        stats = json.loads(file.read_text())
+        self.assertIsNone(stats["ways"])
+        self.assertTrue(any(note.startswith("no paths from lights") for note in stats["left_out"]))
 
     def test_scene_that_needs_little(self):
         """No lights but points, no specular, no sky: what is left out is said, and has no pass."""

@@ -29,6 +29,10 @@ SETTINGS = {
     "samples_per_hit": "samples_per_hit",
     "pilot_spp": "pilot_samples",
     "min_fraction": "min_fraction",
+    "light_paths": "light_paths",
+    "connections": "connections",
+    "later_connections": "later_connections",
+    "light_tracing": "light_tracing",
     "max_depth": "max_depth",
 }
 

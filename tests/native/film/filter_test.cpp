@@ -75,6 +75,22 @@ TEST(Filter, QuantilesFollowTheDensity) {
   }
 }
 
+TEST(Filter, DensityIsThatOfItsSamples) {
+  for (const Shape& s : {gaussian(1.5f), gaussian(0.1f), blackmanHarris(1.5f), blackmanHarris(3)}) {
+    const PixelFilter filter(s.type, s.width);
+    const double total = integral(s.density, -s.radius, s.radius, 16);
+    for (const double at : {-0.9, -0.4, 0.0, 0.1, 0.7}) {
+      const double x = at * s.radius, y = 0.3 * s.radius;
+      const double exact = s.density(x) / total * s.density(y) / total;
+      EXPECT_NEAR(double(filter.density({static_cast<float>(x), static_cast<float>(y)})), exact, 1e-4 * exact);
+    }
+    EXPECT_EQ(filter.density({filter.radius() * 1.001f, 0}), 0);
+  }
+  const PixelFilter box(FilterType::kBox, 3);
+  EXPECT_EQ(box.density({0.49f, -0.49f}), 1);
+  EXPECT_EQ(box.density({0.51f, 0}), 0);
+}
+
 TEST(Filter, MeanIsZeroAndVarianceIsTheDensitys) {
   for (const Shape& s : {gaussian(1.5f), gaussian(3), blackmanHarris(1.5f), blackmanHarris(4)}) {
     const PixelFilter filter(s.type, s.width);

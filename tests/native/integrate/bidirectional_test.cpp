@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Paths from both ends against paths from the camera alone: the same image, whatever carries it.
+#include <gtest/gtest.h>
+
+#include "integrate/light_paths.h"
+#include "scenes.h"
+
+namespace wardmis {
+namespace {
+
+using namespace test;
+
+struct Case {
+  const char* name;
+  Scene scene;
+};
+
+Material matte(Rgb c) { return ward(c, {0, 0, 0}, 0.1f, WardVariant::kWardGmd); }
+
+Light pointLamp(Vec3f at, float radius, float power = 6) {
+  Light l;
+  l.type = LightType::kPoint;
+  l.toWorld.t = at;
+  l.emitted = {power, power * 0.8f, power * 0.6f};
+  l.radius = radius;
+  return l;
+}
+
+// A square of the half size about `at` that faces n.
+void addWall(Scene& scene, Vec3f at, Vec3f n, float half, int material) {
+  const Framef f = Framef::around(n);
+  addMesh(scene, {at - (f.x + f.y) * half, at + (f.x - f.y) * half, at + (f.x + f.y) * half, at + (f.y - f.x) * half},
+          {0, 1, 2, 0, 2, 3}, material);
+}
+
+// A floor with a wall, seen from above.
+Scene corner(const Material& floor, const Material& wall) {
+  Scene scene;
+  scene.materials = {floor, wall};
+  addPlane(scene, 2, 0);
+  addWall(scene, {-1, 0, 1}, normalize(Vec3f{1, 0, 0.2f}), 1.5f, 1);
+  lookFrom(scene, 0.5f, 1, 16);
+  return scene;
+}
+
+void lookThroughLens(Scene& scene, float radius) {
+  Camera& c = *scene.camera;
+  c.projection = Projection::kPerspective;
+  c.toWorld.t = c.toWorld.z * 5;
+  c.left = c.bottom = -0.25f, c.right = c.top = 0.25f;
+  c.lensRadius = radius, c.focusDistance = 4.5f;
+}
+
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  const Material white = matte({0.8f, 0.7f, 0.6f}),
+                 shiny = ward({0.3f, 0.3f, 0.3f}, {0.5f, 0.6f, 0.6f}, 0.2f, WardVariant::kWardGmd);
+  const auto add = [&](const char* name, Scene scene) { all.push_back({name, std::move(scene)}); };
+  Scene point = corner(white, white);
+  point.lights = {pointLamp({0.5f, 0.2f, 1}, 0)};
+  add("point", point);
+  Scene ball = corner(white, shiny);
+  ball.lights = {pointLamp({0.5f, 0.2f, 1}, 0.2f)};
+  add("ball", ball);
+  Scene lens = ball;
+  lookThroughLens(lens, 0.2f);
+  lens.film.filter = FilterType::kGaussian, lens.film.filterWidth = 1.5f;
+  add("lens", lens);
+  Scene mesh = corner(shiny, white);
+  mesh.materials.push_back({});
+  mesh.materials.back().emission.value = {3, 4, 5};
+  addWall(mesh, {0.8f, 0.3f, 0.7f}, normalize(Vec3f{-1, 0, 0.3f}), 0.3f, 2);
+  add("mesh", mesh);
+  Scene area = corner(shiny, shiny);
+  Light square;
+  square.type = LightType::kArea;
+  square.toWorld = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.2f, 0, 1.2f}};
+  square.sizeX = 0.5f, square.sizeY = 0.3f;
+  square.emitted = {5, 5, 4};
+  area.lights = {square};
+  add("area", area);
+  Scene sun = corner(white, shiny);
+  Light far;
+  far.type = LightType::kSun;
+  far.toWorld = {{0, 1, 0}, {0, 0, 1}, normalize(Vec3f{1, 0.2f, 0.6f}), {0, 0, 0}};
+  far.angle = 0.2f, far.emitted = {2, 2, 2};
+  sun.lights = {far};
+  add("sun", sun);
+  Scene sky = corner(white, shiny);
+  addCosineSky(sky, 32);
+  add("sky", sky);
+  Scene several = ball;
+  several.lights.push_back(square), several.lights.push_back(far);
+  add("several", several);
+  return all;
+}
+
+RenderSettings settings(Integrator integrator, uint32_t spp) {
+  RenderSettings s;
+  s.integrator = integrator;
+  s.allocation = Allocation::kEqual;
+  s.weights = Weights::kBalance;
+  s.integrand = Integrand::kJoint;
+  s.sampler = SamplerType::kIndependent;
+  s.pixels = PixelSamples::kEven;
+  s.spp = spp, s.maxDepth = 4, s.threads = 2;
+  return s;
+}
+
+// Means over blocks of 4 x 4 pixels with their errors, from renders of other seeds.
+struct Blocks {
+  std::vector<double> mean, error;
+};
+Blocks blocks(const Scene& scene, RenderSettings s, int renders) {
+  constexpr int kSide = 4;
+  const int across = scene.film.width / kSide;
+  Blocks b{std::vector<double>(static_cast<size_t>(across * across)), {}};
+  std::vector<double> square(b.mean.size());
+  for (int r = 0; r < renders; ++r) {
+    s.seed = 100 + static_cast<uint64_t>(r);
+    const FilmBuffer film = renderScene(scene, s);
+    std::vector<double> one(b.mean.size());
+    for (int y = 0; y < film.height; ++y)
+      for (int x = 0; x < film.width; ++x)
+        one[static_cast<size_t>(y / kSide * across + x / kSide)] +=
+            double(luminance(film.mean(film.at(x, y)))) / (kSide * kSide);
+    for (size_t i = 0; i < one.size(); ++i) b.mean[i] += one[i] / renders, square[i] += one[i] * one[i] / renders;
+  }
+  for (size_t i = 0; i < square.size(); ++i)
+    b.error.push_back(std::sqrt(std::max(square[i] - b.mean[i] * b.mean[i], 0.0) / (renders - 1)));
+  return b;
+}
+
+struct Ways {
+  const char* name;
+  FromLights from;
+  Weights weights = Weights::kBalance;
+};
+
+// Of 8 scenes, 16 blocks and 6 ways: |t| with 15 degrees of freedom beyond 5.5 comes once in 20 seeds.
+TEST(Bidirectional, ShowsWhatPathsFromTheCameraShow) {
+  const Ways ways[] = {{"both", {}},
+                       {"connections", {1, 1, 1, false}},
+                       {"film", {1, 0, 0, true}},
+                       {"many", {4, 3, 2, true}},
+                       {"few", {0.1, 1, 1, true}},
+                       {"power", {}, Weights::kPower}};
+  for (const auto& [name, scene] : cases()) {
+    const Blocks expected = blocks(scene, settings(Integrator::kPath, 64), 16);
+    for (const Ways& way : ways) {
+      RenderSettings s = settings(Integrator::kBidirectional, 16);
+      s.fromLights = way.from, s.weights = way.weights;
+      const Blocks got = blocks(scene, s, 16);
+      double worst = 0, sum = 0, reference = 0;
+      for (size_t i = 0; i < got.mean.size(); ++i) {
+        const double z = (got.mean[i] - expected.mean[i]) / std::hypot(got.error[i], expected.error[i]);
+        worst = std::max(worst, std::abs(z));
+        sum += got.mean[i], reference += expected.mean[i];
+      }
+      EXPECT_LT(worst, 5.5) << name << ", " << way.name << ": " << sum / reference;
+    }
+  }
+}
+
+bool same(const FilmBuffer& a, const FilmBuffer& b) {
+  for (size_t i = 0; i < a.pixels.size(); ++i)
+    for (size_t c = 0; c < 3; ++c)
+      if (a.pixels[i].sum[c] != b.pixels[i].sum[c] || a.pixels[i].squares[c] != b.pixels[i].squares[c]) return false;
+  return a.pixels.size() == b.pixels.size();
+}
+
+// More paths than are kept, so that they come in lots.
+TEST(Bidirectional, ImagesAreThoseOfAnyThreads) {
+  for (auto& [name, scene] : cases()) {
+    RenderSettings s = settings(Integrator::kBidirectional, 3);
+    s.sampler = SamplerType::kSobol;
+    s.fromLights.paths = 2.0 * kMostKeptPaths / (16 * 16) + 0.5;
+    if (std::string(name) != "lens") s.fromLights.paths = 2;
+    s.threads = 1;
+    const FilmBuffer one = renderScene(scene, s);
+    for (const int threads : {2, 7}) {
+      s.threads = threads;
+      EXPECT_TRUE(same(one, renderScene(scene, s))) << name << ' ' << threads;
+    }
+  }
+}
+
+TEST(Bidirectional, PartsAreThoseOfTheWhole) {
+  const Scene scene = cases()[2].scene;
+  RenderSettings s = settings(Integrator::kBidirectional, 8);
+  const FilmBuffer whole = renderScene(scene, s);
+  s.part = SampleRange{0, 3};
+  const FilmBuffer first = renderScene(scene, s);
+  s.part = SampleRange{3, 8};
+  const FilmBuffer second = renderScene(scene, s);
+  for (size_t i = 0; i < whole.pixels.size(); ++i) {
+    RgbSum sum = first.pixels[i].sum;
+    sum += second.pixels[i].sum;
+    for (size_t c = 0; c < 3; ++c) EXPECT_EQ(sum[c], whole.pixels[i].sum[c]);
+  }
+}
+
+// A lamp over a floor, and one in a box without a lid, under a ceiling.
+Scene lampUnderCeiling(bool boxed) {
+  const Material white = matte({0.8f, 0.8f, 0.8f});
+  Scene scene;
+  scene.materials = {white};
+  addPlane(scene, 3, 0);
+  if (boxed) addWall(scene, {0, 0, 3}, {0, 0, -1}, 3, 0);
+  if (boxed)
+    for (const Vec3f n : {Vec3f{1, 0, 0}, Vec3f{-1, 0, 0}, Vec3f{0, 1, 0}, Vec3f{0, -1, 0}})
+      addWall(scene, Vec3f{0, 0, 1} - n * 0.3f, n, 0.3f, 0);
+  if (boxed) addWall(scene, {0, 0, 0.7f}, {0, 0, 1}, 0.3f, 0);
+  scene.lights = {pointLamp({0, 0, 0.8f}, 0.05f)};
+  lookFrom(scene, 0.8f, 1, 32);
+  scene.camera->clipNear = 47;  // from below the ceiling
+  return scene;
+}
+
+TEST(Bidirectional, AutomaticTakesLightPathsWhereTheyPay) {
+  for (const bool boxed : {false, true}) {
+    RenderSettings s = settings(Integrator::kBidirectional, 32);
+    s.allocation = Allocation::kAuto;
+    Statistics statistics;
+    renderScene(lampUnderCeiling(boxed), s, &statistics);
+    EXPECT_EQ(statistics.ways.has_value(), boxed) << statistics.wayGain;
+    EXPECT_GE(statistics.wayGain, 1);
+  }
+}
+
+// Where nothing is to be had by them, the image is that of paths from the camera.
+TEST(Bidirectional, WithoutLightsThatSendPathsItIsThePath) {
+  Scene scene = cases()[1].scene;
+  scene.lights.clear();
+  worldOf(scene).radiance = {1, 1, 1};
+  Statistics statistics;
+  RenderSettings s = settings(Integrator::kBidirectional, 4);
+  const FilmBuffer film = renderScene(scene, s, &statistics);
+  s.integrator = Integrator::kPath;
+  EXPECT_TRUE(same(film, renderScene(scene, s)));
+  EXPECT_FALSE(statistics.ways.has_value());
+  EXPECT_TRUE(std::ranges::any_of(statistics.leftOut,
+                                  [](const std::string& l) { return l.starts_with("no paths from lights"); }));
+}
+
+}  // namespace
+}  // namespace wardmis
