@@ -14,7 +14,7 @@ constexpr int kSide = 4;                    // of a pilot's pixel, in pixels of 
 constexpr double kShare = 0.01;             // of the image's camera samples that it takes
 constexpr uint32_t kLeast = 4, kMost = 64;  // samples of its own pixels
 
-// What things cost, in rays that camera paths follow: measured (docs/performance.md).
+// What things cost, in rays that camera paths follow: as times in blend/ajar.blend have it.
 constexpr double kJoined = 1.2;    // a connection: two surfaces are asked, and often a ray
 constexpr double kLightRay = 2.2;  // of a path from a light: the surface is asked from both sides
 
