@@ -61,9 +61,9 @@ json pixelSamples(const FilmBuffer& film, double gain) {
 // Of paths from the lights; null: there are none.
 json waysJson(const Statistics& s) {
   if (!s.ways) return {};
-  return {{"samples_at_hit", s.ways->samplesAtHit}, {"light_paths", s.ways->paths},
-          {"connections", s.ways->connections},     {"later_connections", s.ways->laterConnections},
-          {"light_tracing", s.ways->film},          {"expected_gain", s.wayGain}};
+  return {{"samples_at_hit", s.samplesAtHit},   {"light_paths", s.ways->paths},
+          {"connections", s.ways->connections}, {"later_connections", s.ways->laterConnections},
+          {"light_tracing", s.ways->film},      {"expected_gain", s.wayGain}};
 }
 
 json statisticsJson(const std::string& path, const RenderSettings& settings, const Scene& scene, const Statistics& s,

@@ -28,27 +28,6 @@ inline Ray reversed(Vec3f direction, float time, int depth) {
   return ray;
 }
 
-// What is left at the end of a ray between vertices, or between one and the lens: as rays of the surfaces' techniques
-// find it. ray.path.transparent: how many surfaces the two paths have passed; it becomes that of the whole.
-template <uint32_t N, size_t K>
-Rgb between(const RenderScene& world, Ray& ray) {
-  constexpr Rgb kAll{1, 1, 1}, kNone{0, 0, 0};
-  if (world.mostTransparent == 0) return world.accel.occluded(ray) ? kNone : kAll;
-  Rgb left = kAll;
-  for (;;) {
-    const Hit hit = world.accel.intersect(ray);
-    if (!hit.valid()) return left;
-    if (!mayPass(world, ray, hit, world.mostTransparent)) return kNone;
-    const auto x = interact<N, K>(world.scene, world.geometry, ray, hit);
-    left *= x.surface.straight();
-    if (!(strength(left) > 0)) return kNone;
-    ray.tMin = behind(x, ray.direction, hit.t);
-    ray.left = x.primitive;
-    if (!(ray.tMin < ray.tMax)) return left;
-    ray.path = ray.path.passed();
-  }
-}
-
 // The kind of bounce by which the camera's path would have gone out of a surface in this direction: at random, as often
 // as it would have been each.
 template <size_t K, class S>
@@ -73,8 +52,8 @@ struct SeenVertex {
   Rgb f{0, 0, 0};  // f cos of the light that comes there, which any technique brings
   Ways others;     // PathEnd::others(), in which the camera made more of the path
 
-  // ray: to the vertex; scattersSince: of the camera's path before it. n: expected samples of the camera's techniques
-  // there, by surface; join: of connections that are made from there.
+  // ray: to the vertex; depth: bounces of the whole path; counts: expected samples of the camera's techniques there, of
+  // its surface; join: of connections that are made from there.
   template <class Counts>
   SeenVertex(const RenderScene& world, const LightPaths& light, const LightVertex& v, const Ray& ray, int depth,
              Counts&& counts, Join join)
@@ -83,10 +62,7 @@ struct SeenVertex {
     if (!(s.cosLight > 0) || !(s.cosViewer > 0)) return;
     const Fractions<K> n = counts(x.surface);
     if (v.length == 1) {
-      const float matte = x.surface.strength() > 0 ? x.surface.diffuseStrength() / x.surface.strength() : 1;
-      const Vec3f facing = x.surface.transmits() ? Vec3f{0, 0, 0} : x.geometric;
-      const LightView view = world.emitters.view(
-          x.position, facing, matte, world.lights != nullptr ? &world.lights->at(x.position, facing) : nullptr);
+      const LightView view = lightsAt<N>(world, x);
       const LightSample arriving =
           world.emitters.arriving(v.emitter, &view, v.position, v.towards, v.distance, depth, ray.path.time);
       const LightEdge<K> edge = lightEdge<K>(x, s, arriving);
@@ -98,7 +74,7 @@ struct SeenVertex {
       found += light.power(double(n[Techniques<K>::kLight]) * double(edge.light));
       others = PathEnd{kByCamera, found, {}, v.density}.others(0);
     } else {
-      f = s.total();
+      f = total(s.f);
       others =
           PathEnd{join, light.power(light.perVertex(join)), v.back, v.density}.others(light.power(double(s.camera(n))));
     }
@@ -129,7 +105,7 @@ Chosen chooseVertex(const LightPaths& light, const X& x, uint32_t vertex, int de
   constexpr uint32_t kAmong = 8;
   constexpr float kBehind = 0.01f, kMatte = 1 / kPi<float>;  // the latter: a density
   const bool through = x.surface.transmits();
-  const auto own = static_cast<float>(light.perVertex(vertex == 0 ? kAtFirst : kAtLater));
+  const auto own = static_cast<float>(light.perVertex(joinAt(vertex)));
   Chosen chosen;
   float sum = 0, value = 0;
   for (uint32_t k = 0; k < kAmong; ++k) {
@@ -166,7 +142,7 @@ Rgb connect(const RenderScene& world, const CameraVertex& c, const InteractionOf
   const Vec3f d = to / std::sqrt(d2);
   Scattering<K> here;
   scatter<K>(x, d, here);
-  const Rgb f = here.total();
+  const Rgb f = total(here.f);
   if (!(maxComponent(f) > 0) || !(here.cosLight > 0)) return kNone;
   Ray ray = detail::reversed(-d, x.path.time, x.path.depth + 1);
   const SeenVertex<N, K> there(world, c.light, v, ray, vertex + v.length, LaterCounts<K>{world.emitters.any()},
@@ -190,12 +166,12 @@ Rgb connect(const RenderScene& world, const CameraVertex& c, const InteractionOf
   ray.left = x.primitive, ray.aimed = there.x.primitive;
   ray.path.transparent = static_cast<uint16_t>(x.path.transparent + v.passed + v.passedFirst);
   ++counts.connections;
-  const Rgb left = detail::between<N, K>(world, ray);
+  const Rgb left = transmittance<N, K, false>(world, ray);
   if (isBlack(left) || ray.path.transparent > world.mostTransparent ||
       ray.path.transparent - v.passedFirst >= world.mostFollowed)
     return kNone;
   const WeightPower& power = c.light.power;
-  const Join join = vertex == 0 ? kAtFirst : kAtLater;
+  const Join join = joinAt(static_cast<uint32_t>(vertex));
   const double g = double(there.s.cosViewer) / double(d2), back = double(here.cosLight) / double(d2),
                own = power(c.light.perVertex(join));
   const double reverse = double(lightDensity<K>(there.x.surface, there.s.p, there.s.cosViewer, there.s.cosLight));

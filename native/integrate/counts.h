@@ -20,8 +20,8 @@ struct Counts {
   PerTechnique following{};  // rays of the paths that went on from samples of each technique
   uint64_t cameraRays = 0;
   uint64_t lightRays = 0, connections = 0;  // of paths from lights, those to the lens among them; between vertices
-  std::array<uint64_t, 2>
-      joined{};  // vertices that were joined, visible or not: the first of a camera path, and later ones
+  // Vertices that were joined, visible or not: the first of a camera path, and later ones.
+  std::array<uint64_t, 2> joined{};
   // Directions above the surface at which a lobe's density is no normal number: e^-E is smaller than any.
   uint64_t underflows = 0;
   RareCounts rare;

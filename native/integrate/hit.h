@@ -59,7 +59,7 @@ class HitEstimate {
         split_(plan.integrand == Integrand::kSplit),
         present_(integrandsOf<N, K>(x)),
         wo_(localView(x)),
-        view_(viewOfLights(world, x)),
+        view_(lightsAt<N>(world, x)),
         sampler_(samplerOf(sampler)),
         mixture_(plan.fractions, plan.samples, plan.weights),
         draws_(world, sampler, x, plan, view_, present_, wo_) {}
@@ -119,20 +119,6 @@ class HitEstimate {
   static Vec3<T> localView(const X& x) {
     const Vec3f wo = x.frame.toLocal(x.wo);
     return {T(wo.x), T(wo.y), T(wo.z)};
-  }
-  static LightView viewOfLights(const RenderScene& world, const X& x) {
-    const auto& s = x.surface;
-    const float matte = s.strength() > 0 ? s.diffuseStrength() / s.strength() : 1;
-    bool oneSided = true;  // no light goes through from behind
-    if constexpr (kGeneral) oneSided = !s.transmits();
-    const Vec3f facing = oneSided ? x.geometric : Vec3f{0, 0, 0};
-    return world.emitters.view(x.position, facing, matte,
-                               world.lights != nullptr ? &world.lights->at(x.position, facing) : nullptr);
-  }
-  static Rgb total(const Values& f) {
-    Rgb all = f[0];
-    for (size_t i = 1; i < f.size(); ++i) all += f[i];
-    return all;
   }
 
   // ---- f cos and densities ----
@@ -222,7 +208,8 @@ class HitEstimate {
     Rgb radiance = l.radiance;
     if (l.shadow) {
       ++counts_.rays[kLight];
-      const Rgb left = transmittance<N, K>(world_, shadowRay(s, l));
+      Ray shadow = shadowRay(s, l);
+      const Rgb left = transmittance<N, K>(world_, shadow);
       if (world_.learning != nullptr) [[unlikely]]
         world_.learning->note(view_.p, view_.n, l.entry, !isBlack(left));
       if (isBlack(left)) return;
@@ -362,21 +349,22 @@ class HitEstimate {
       if (has(used, k)) q += double(mixture_.n[k]) * double(s.p[k]);
     const double reverse = s.sharp ? 0 : double(lightDensity<K>(x_.surface, s.p, cosViewer, cosLight)),
                  d2 = double(t) * double(t);
-    return {plan_.vertex == 0 ? kAtFirst : kAtLater,
-            s.sharp ? 0 : power(camera.light.perVertex(plan_.vertex == 0 ? kAtFirst : kAtLater)),
+    const Join join = joinAt(plan_.vertex);
+    return {join, s.sharp ? 0 : power(camera.light.perVertex(join)),
             camera.end.others(power(reverse), !s.sharp) * power(double(cosLight) / d2), power(q / d2)};
   }
 
-  // For a pilot. alone: the sample's scale without paths from the lights.
-  void noteWays(const Sample& s, Rgb value, float alone, bool shared) const {
+  // For a pilot. p, used: densities of the techniques that find what the sample brings; shared: with paths from the
+  // lights.
+  void noteWays(const Sample& s, Rgb value, const Fractions<K>& p, TechniqueMask used, bool shared) const {
     if (plan_.camera == nullptr || plan_.camera->notes == nullptr || isBlack(value)) return;
     const CameraVertex& camera = *plan_.camera;
     Ways ways = shared ? s.others : Ways{};
-    ways += Ways::one(kByCamera, 1 / double(alone));
+    ways += Ways::one(kByCamera, 1 / double(mixture_.scale(s.technique, p, used)));
     if (plan_.vertex > 0) return camera.note(value, ways);
     const float v = luminance(absolute(value * camera.throughput));
     WayScatter& scatter = camera.notes->scatter[s.technique];
-    camera.notes->candidates.add(scatter.sums, v, 1, ways);
+    camera.notes->candidates.add(scatter.sums, v, ways);
     scatter.sum += v, scatter.squares += v * v;
   }
 
@@ -411,17 +399,6 @@ class HitEstimate {
     return static_cast<TechniqueMask>(techniquesFor<K>(plan_.integrand, integrand) & among);
   }
 
-  // Of rays that see it, by its visibility.
-  Values seen(Values f, uint8_t visibility, bool ahead) const {
-    for (size_t l = 0; l < kLobes; ++l) {
-      uint8_t rays = kSeenByGlossy;
-      if constexpr (kGeneral) rays = x_.surface.rays(l, ahead);
-      if ((visibility & rays) == 0) f[l] = {0, 0, 0};
-    }
-    if ((visibility & kSeenByDiffuse) == 0) f[kCosine] = {0, 0, 0};
-    return f;
-  }
-
   // Light of an emitter, whose density is in s.p.
   void weigh(const Sample& s, Rgb radiance, uint8_t visibility) {
     const bool otherwise = s.otherwise();
@@ -450,16 +427,16 @@ class HitEstimate {
   void add(const Sample& s, TechniqueMask among, bool ahead, const Values& all, Rgb radiance, uint8_t visibility) {
     constexpr uint8_t kAll = kSeenBySurfaces | kSeenByTranslucence;
     const bool byAll = (visibility & kAll) == kAll;
-    const Values masked = byAll ? Values{} : seen(all, visibility, ahead);
+    const Values masked = byAll ? Values{} : seen<K>(x_.surface, all, visibility, ahead);
     const Values& f = byAll ? all : masked;
     const size_t t = s.technique;
     if (!split_) {
       const Rgb value = total(f) * radiance;
       const TechniqueMask used = techniques(t, among);
-      const float scale = scaleOf(s, used, ahead == s.ahead && among != kByLight);
+      const bool shared = ahead == s.ahead && among != kByLight;
+      const float scale = scaleOf(s, used, shared);
       sum_ += value * scale;
-      if constexpr (kConnects)
-        noteWays(s, value * scale, mixture_.scale(t, s.p, used), ahead == s.ahead && among != kByLight);
+      if constexpr (kConnects) noteWays(s, value * scale, s.p, used, shared);
       note(0, value, s.p, used, s.set);
       for (size_t i = 0; i < f.size(); ++i) noteLight(i, f[i] * radiance * scale);
       return;
@@ -478,9 +455,9 @@ class HitEstimate {
 
   // Light of an emitter that no other technique meets.
   void weighExclusive(const Sample& s, const LightSample& l, Rgb radiance) {
-    Values each = seen(s.otherwise() ? s.lit.same : s.f, l.visibility, s.ahead);
+    Values each = seen<K>(x_.surface, s.otherwise() ? s.lit.same : s.f, l.visibility, s.ahead);
     if (s.otherwise()) [[unlikely]] {
-      const Values more = seen(s.lit.other, l.visibility, !s.ahead);
+      const Values more = seen<K>(x_.surface, s.lit.other, l.visibility, !s.ahead);
       for (size_t i = 0; i < each.size(); ++i) each[i] += more[i];
     }
     for (Rgb& value : each) value = value * radiance;
@@ -490,7 +467,7 @@ class HitEstimate {
       alone[kLight] = l.pdf;
       scale = mixture_.scale(kLight, alone, kByLight, s.moved > 0 ? 0 : s.others.sum());
       sum_ += total(each) * scale;
-      noteWays(s, total(each) * scale, mixture_.scale(kLight, alone, kByLight), !(s.moved > 0));
+      noteWays(s, total(each) * scale, alone, kByLight, !(s.moved > 0));
     } else {
       sum_ += total(each) / (l.pdf * mixture_.n[kLight]);
     }

@@ -150,7 +150,7 @@ void splat(const KernelInput<K>& in, const LightVertex& v, Vec2f lens, std::vect
   ray.tMax = seen->clear;
   ray.path.transparent = static_cast<uint16_t>(v.passed + v.passedFirst);
   ++counts.lightRays;
-  const Rgb left = detail::between<N, K>(world, ray);
+  const Rgb left = transmittance<N, K, false>(world, ray);
   if (isBlack(left) || ray.path.transparent > world.mostTransparent) return;
   const double camera = double(seen->importance) * double(at.s.cosViewer), own = light.power(light.perPixel());
   Ways ways = at.others * light.power(camera);

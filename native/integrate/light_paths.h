@@ -83,8 +83,7 @@ struct LightPaths {
   // more than one at random.
   static constexpr double kWorth = 4;
   double perVertex(Join join) const {
-    const int k = join == kAtFirst ? connections : laterConnections;
-    return paths > 0 ? kWorth * k / verticesPerPath : 0;
+    return paths > 0 ? kWorth * (join == kAtFirst ? connections : laterConnections) / verticesPerPath : 0;
   }
   // Rays to the film for each camera ray through a pixel.
   double perPixel() const { return toFilm ? paths * pixelsPerRay : 0; }
@@ -109,7 +108,7 @@ struct CameraVertex {
   Rgb before{1, 1, 1}, throughput{1, 1, 1};  // of what is seen at the first hit, and here
 
   void note(Rgb value, const Ways& ways) const {
-    notes->candidates.add(notes->sums, luminance(absolute(value * throughput)), 1, ways);
+    notes->candidates.add(notes->sums, luminance(absolute(value * throughput)), ways);
   }
 
   // At a surface, whose face the ray meets at this cosine. reached: by paths from the lights.

@@ -12,7 +12,6 @@ namespace {
 
 constexpr uint32_t kChunk = 256;  // paths that one list is of
 constexpr int kBand = 16;         // rows of the film that one thread sums
-constexpr uint32_t kLot = kMostKeptPaths;
 
 }  // namespace
 
@@ -22,7 +21,6 @@ std::string noLightPaths(const Scene& scene, const Geometry& geometry, const Emi
   if (!(s.fromLights.paths > 0)) return none + "none are asked for";
   if (s.fromLights.connections == 0 && s.fromLights.laterConnections == 0 && !s.fromLights.film)
     return none + "they are neither connected nor traced to the film";
-  if (!LightEmission(emitters, geometry).any()) return none + "no light has a power that they could share";
   if (geometry.moves() || CameraRays(*scene.camera, scene.film).moves()) return none + "the scene moves";
   if (s.light) return none + "passes of light are wanted";
   for (const Placement& p : geometry.placements) {
@@ -41,6 +39,7 @@ std::string noLightPaths(const Scene& scene, const Geometry& geometry, const Emi
                             [](const Closure& c) { return c.version == 3 && c.type != ClosureType::kTransparent; }))
       return none + m.name + " mixes transparency with what reflects, which Blender 3 counts otherwise for shadows";
   }
+  if (!LightEmission(emitters, geometry).any()) return none + "no light has a power that they could share";
   return {};
 }
 
@@ -78,8 +77,7 @@ void addToFilm(const KernelInput<K>& in, const std::vector<LightList>& lists, st
             const Rgb value = s.value * (share / (side * side));
             const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
             film[pixel] += value;
-            if (in.waySums != nullptr)
-              in.wayCandidates->add((*in.waySums)[pixel], luminance(absolute(value)), 1, s.ways);
+            if (in.waySums != nullptr) in.wayCandidates->add((*in.waySums)[pixel], luminance(absolute(value)), s.ways);
           }
         }
       }
@@ -97,8 +95,8 @@ void traceLight(const KernelInput<K>& in, uint32_t sample, LightPaths& light, co
   light.vertices.clear(), light.sketches.clear();
   std::vector<LightList> lists;
   // in lots, each of which is on the film before the next is there
-  for (uint32_t done = 0; done < light.paths; done += std::min(light.paths - done, kLot)) {
-    const uint32_t lot = std::min(light.paths - done, kLot), first = sample * light.paths + done;
+  for (uint32_t done = 0; done < light.paths; done += std::min(light.paths - done, kMostKeptPaths)) {
+    const uint32_t lot = std::min(light.paths - done, kMostKeptPaths), first = sample * light.paths + done;
     lists.resize((lot + kChunk - 1) / kChunk);
     tbb::parallel_for(size_t{0}, lists.size(), [&](size_t c) {
       const auto begin = static_cast<uint32_t>(c) * kChunk;

@@ -13,7 +13,6 @@
 
 #include "integrate/cost.h"
 #include "integrate/doubles.h"
-#include "integrate/light_tracer.h"
 #include "integrate/memory.h"
 #include "integrate/setup.h"
 #include "integrate/way_pilot.h"
@@ -302,10 +301,7 @@ FilmBuffer renderWith(const BuiltScene& built, const RenderSettings& settings, S
   stats.buildSeconds = built.seconds;
   stats.needs = setup.needs;
   stats.kernel = setup.kernelNeeds;
-  for (std::string& left : leftOut(built.scene, setup.needs, built.emitters)) stats.leftOut.push_back(std::move(left));
-  if (settings.bidirectional())
-    if (std::string none = noLightPaths(built.scene, built.geometry, built.emitters, settings); !none.empty())
-      stats.leftOut.push_back(std::move(none));
+  for (std::string& left : leftOut(built, settings)) stats.leftOut.push_back(std::move(left));
   if (const Doubles doubles = visibleDoubles(built); doubles.share >= kSharedPlaceIsTold)
     stats.doubts.push_back(doubles.told());
   stats.triangles = built.geometry.triangles;
@@ -315,9 +311,8 @@ FilmBuffer renderWith(const BuiltScene& built, const RenderSettings& settings, S
   stats.techniques = setup.techniques;
   stats.techniqueNames = built.techniqueNames();
   if ((setup.needs & kNeedsConnections) != 0) {
-    const FromLights& from = settings.fromLights;
-    stats.ways = {settings.samplesPerHit, from.paths, from.connections, from.laterConnections,
-                  from.film && built.scene.camera.has_value() && setup.input.camera.seesBack()};
+    stats.ways = settings.fromLights, stats.samplesAtHit = settings.samplesPerHit;
+    stats.ways->film = settings.fromLights.film && setup.input.camera.seesBack();
   }
   if (stats.ways && needsMoments(settings.allocation) && settings.allocation != Allocation::kAuto)
     stats.leftOut.push_back("no allocation " + std::string(name(settings.allocation)) +

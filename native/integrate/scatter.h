@@ -24,6 +24,13 @@ float lightDensity(const S& surface, const Fractions<K>& p, float cosViewer, flo
   return mixture * (cosViewer / cosLight);
 }
 
+template <size_t I>
+Rgb total(const std::array<Rgb, I>& f) {
+  Rgb sum = f[0];
+  for (size_t i = 1; i < I; ++i) sum += f[i];
+  return sum;
+}
+
 // One direction at a surface.
 template <size_t K>
 struct Scattering {
@@ -35,12 +42,6 @@ struct Scattering {
   float local = 0;                    // its cosine with the shading normal
   float cosLight = 0, cosViewer = 0;  // absolute, with the face's
 
-  Rgb total() const { return total(f); }
-  static Rgb total(const Values& f) {
-    Rgb sum = f[0];
-    for (size_t i = 1; i < f.size(); ++i) sum += f[i];
-    return sum;
-  }
   // The density of the camera's path, with its expected numbers of samples.
   float camera(const Fractions<K>& n) const {
     float q = 0;
@@ -73,8 +74,11 @@ void scatter(const X& x, Vec3f wi, Scattering<K>& s) {
 // Values of those lobes alone whose rays see what has this visibility.
 template <size_t K, class S>
 std::array<Rgb, K - 1> seen(const S& surface, std::array<Rgb, K - 1> f, uint8_t visibility, bool ahead) {
-  for (size_t l = 0; l < Techniques<K>::kLobes; ++l)
-    if ((visibility & surface.rays(l, ahead)) == 0) f[l] = {0, 0, 0};
+  for (size_t l = 0; l < Techniques<K>::kLobes; ++l) {
+    uint8_t rays = kSeenByGlossy;
+    if constexpr (requires { surface.rays(l, ahead); }) rays = surface.rays(l, ahead);
+    if ((visibility & rays) == 0) f[l] = {0, 0, 0};
+  }
   if ((visibility & kSeenByDiffuse) == 0) f[Techniques<K>::kCosine] = {0, 0, 0};
   return f;
 }
@@ -96,15 +100,15 @@ LightEdge<K> lightEdge(const X& x, const Scattering<K>& s, const LightSample& li
   edge.light = moved > 0 ? 0 : light.pdf;
   if (light.exclusive) {
     if (moved > 0) return edge;
-    edge.f = Scattering<K>::total(seen<K>(x.surface, s.lit.any ? s.lit.same : s.f, light.visibility, s.ahead));
-    if (s.lit.any) edge.f += Scattering<K>::total(seen<K>(x.surface, s.lit.other, light.visibility, !s.ahead));
+    edge.f = total(seen<K>(x.surface, s.lit.any ? s.lit.same : s.f, light.visibility, s.ahead));
+    if (s.lit.any) edge.f += total(seen<K>(x.surface, s.lit.other, light.visibility, !s.ahead));
     return edge;
   }
   const float strength = x.surface.strength();
   const auto all = moved > 0   ? s.lit.bySurface(s.f, light.counted, strength)
                    : s.lit.any ? s.lit.blended(s.f, light.counted, strength)
                                : s.f;
-  edge.f = Scattering<K>::total(seen<K>(x.surface, all, light.visibility, s.ahead));
+  edge.f = total(seen<K>(x.surface, all, light.visibility, s.ahead));
   return edge;
 }
 

@@ -15,8 +15,8 @@ PathLimits RenderSettings::limits() const {
 }
 
 bool RenderSettings::sharesPixels() const {
-  if (part || pixels == PixelSamples::kEven || bidirectional())
-    return false;  // parts of an image do not know of each other
+  if (part || pixels == PixelSamples::kEven) return false;  // parts of an image do not know of each other
+  if (bidirectional()) return false;                        // paths from the lights come for all pixels alike
   if (!open() && PixelSurvey::samplesFor(spp) == 0) return false;
   return pixels == PixelSamples::kByError || (allocation == Allocation::kAuto && sampler != SamplerType::kStratified);
 }

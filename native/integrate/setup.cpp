@@ -88,10 +88,6 @@ SampleCost<K> givenCost(const GivenCost& given) {
 Integrand integrandOf(const RenderSettings& s, uint32_t needs) {
   return (needs & kNeedsConnections) != 0 ? Integrand::kJoint : s.integrand;
 }
-Weights weightsOf(const RenderSettings& s, uint32_t needs) {
-  if ((needs & kNeedsConnections) == 0) return s.weightRule();
-  return s.weights == Weights::kPower ? Weights::kPower : Weights::kBalance;
-}
 
 std::optional<RenderScene> alone(const BuiltScene& built, const RenderScene& world, uint32_t needs) {
   if (!built.catchers) return std::nullopt;
@@ -153,6 +149,14 @@ uint32_t needs(const BuiltScene& built, const RenderSettings& s) {
   return connects ? n | kNeedsConnections : n;
 }
 
+std::vector<std::string> leftOut(const BuiltScene& built, const RenderSettings& s) {
+  std::vector<std::string> all = leftOut(built.scene, needs(built, s), built.emitters);
+  if (s.bidirectional())
+    if (std::string none = noLightPaths(built.scene, built.geometry, built.emitters, s); !none.empty())
+      all.push_back(std::move(none));
+  return all;
+}
+
 uint32_t kernelNeeds(const BuiltScene& built, const RenderSettings& s) {
   const uint32_t all = needs(built, s), n = all & kKernelNeeds;
   if ((all & kNeedsConnections) != 0) return kKernelNeeds | kNeedsConnections;
@@ -186,7 +190,7 @@ RenderSetup<K>::RenderSetup(const BuiltScene& built, const RenderSettings& s)
             equalFractions<K>(integrandOf(s, needs), techniques),
             s.allocation,
             integrandOf(s, needs),
-            weightsOf(s, needs),
+            s.weightRule(),
             candidates_,
             givenCost<K>(s.cost),
             s.samplesPerHit,

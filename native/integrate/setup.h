@@ -44,6 +44,9 @@ struct BuiltScene {
 uint32_t needs(const BuiltScene& built, const RenderSettings& settings);
 uint32_t kernelNeeds(const BuiltScene& built, const RenderSettings& settings);
 
+// What it leaves out, and why.
+std::vector<std::string> leftOut(const BuiltScene& built, const RenderSettings& settings);
+
 // The kernel for these settings, and its input. Fractions are those of equal counts until they are set.
 template <size_t K>
 struct RenderSetup {

@@ -31,6 +31,18 @@ struct RenderScene {
   bool isBeyond(const Ray& ray) const { return ray.path.transparent >= mostFollowed; }
 };
 
+// The lights as samples of them are drawn at x.
+template <uint32_t N, class X>
+LightView lightsAt(const RenderScene& world, const X& x) {
+  const auto& s = x.surface;
+  const float matte = s.strength() > 0 ? s.diffuseStrength() / s.strength() : 1;
+  bool oneSided = true;  // no light goes through from behind
+  if constexpr ((N & kNeedsLobes) != 0) oneSided = !s.transmits();
+  const Vec3f facing = oneSided ? x.geometric : Vec3f{0, 0, 0};
+  return world.emitters.view(x.position, facing, matte,
+                             world.lights != nullptr ? &world.lights->at(x.position, facing) : nullptr);
+}
+
 namespace detail {
 
 // The probability to go on behind x, by what its surface lets through and what else it sends. That is below 1 wherever
@@ -104,23 +116,27 @@ inline Rgb throughCurve(const Strands& strands, Rgb transparent, PathState& path
 
 }  // namespace detail
 
-// What arrives of light at the end of a shadow ray.
-template <uint32_t N, size_t K>
-Rgb transmittance(const RenderScene& world, const Ray& shadow) {
+// What arrives of light at the end of a ray that goes on as long as it is let through: of a shadow ray, or else as rays
+// of the surfaces' techniques find it. ray.path.transparent: surfaces that have been passed; those of the ray are
+// added.
+template <uint32_t N, size_t K, bool kShadow = true>
+Rgb transmittance(const RenderScene& world, Ray& ray) {
   constexpr Rgb kAll{1, 1, 1}, kNone{0, 0, 0};
-  if ((N & kNeedsLobes) == 0 || world.mostTransparent == 0) return world.accel.occluded(shadow) ? kNone : kAll;
-  Ray ray = shadow;
+  if ((N & kNeedsLobes) == 0 || world.mostTransparent == 0) return world.accel.occluded(ray) ? kNone : kAll;
   Rgb left = kAll;
   for (;;) {
     const Hit hit = world.accel.intersect(ray);
     if (!hit.valid()) return left;
     const Shape& shape = world.geometry.shapes[hit.shape];
     if (!detail::mayPass(world, ray, hit, world.mostTransparent) ||
-        world.scene.materials[static_cast<size_t>(shape.material)].opaqueShadow)
+        (kShadow && world.scene.materials[static_cast<size_t>(shape.material)].opaqueShadow))
       return kNone;
     const auto x = interact<N, K>(world.scene, world.geometry, ray, hit);
-    left *=
-        isCurve(shape) ? detail::throughCurve(*shape.strands, x.surface.transparent, ray.path) : x.surface.transparent;
+    if constexpr (!kShadow)
+      left *= x.surface.straight();
+    else
+      left *= isCurve(shape) ? detail::throughCurve(*shape.strands, x.surface.transparent, ray.path)
+                             : x.surface.transparent;
     if (!(strength(left) > 0)) return kNone;
     ray.tMin = detail::behind(x, ray.direction, hit.t);
     ray.left = x.primitive;

@@ -21,6 +21,9 @@ enum Join : uint8_t {
   kJoins
 };
 
+// Of connections to a vertex of the camera's path, by its number.
+constexpr Join joinAt(uint32_t vertex) { return vertex == 0 ? kAtFirst : kAtLater; }
+
 // Densities, by group.
 struct Ways {
   std::array<double, kJoins> of{};

@@ -32,9 +32,9 @@ class WayCandidates {
   const WayCounts& at(size_t c) const { return counts_[c]; }
   static std::array<double, kJoins> factors(const WayCounts& counts);
 
-  // Adds to sums[c] the second moment that a sample of value v says candidate c has, times scale.
-  void add(std::array<float, kCount>& sums, float v, float scale, const Ways& ways) const {
-    const double own = double(v) * double(v) * double(scale) * ways.sum();
+  // Adds to sums[c] the second moment that a sample of value v says candidate c has.
+  void add(std::array<float, kCount>& sums, float v, const Ways& ways) const {
+    const double own = double(v) * double(v) * ways.sum();
     for (size_t c = 0; c < kCount; ++c) {
       double mixture = kNever * ways.sum();
       for (size_t j = 0; j < kJoins; ++j) mixture += factor_[j][c] * ways.of[j];

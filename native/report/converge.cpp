@@ -305,7 +305,7 @@ class Study {
 
   void describeKernel(Configuration& c) const {
     c.kernel = describe(kernelNeeds(built_, c.settings));
-    c.leftOut = leftOut(built_.scene, needs(built_, c.settings), built_.emitters);
+    c.leftOut = leftOut(built_, c.settings);
   }
 
   void references(std::optional<Reference> given) {

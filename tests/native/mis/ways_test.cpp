@@ -99,7 +99,7 @@ TEST(WayCandidates, PredictTheSecondMoment) {
     const double film = a < 0.8 ? 0.1 * b : 0.1 + 0.9 * b;
     for (const double x : {camera, film}) {
       const Ways w = densities(x);
-      candidates.add(sums, static_cast<float>(f(x) / (w.of[kByCamera] + w.of[kAtFilm])), 1, w);
+      candidates.add(sums, static_cast<float>(f(x) / (w.of[kByCamera] + w.of[kAtFilm])), w);
     }
   }
   for (size_t c = 0; c < candidates.size(); ++c) {
