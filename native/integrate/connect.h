@@ -2,6 +2,8 @@
 // A camera's path and one from a light, joined by a ray between their last vertices.
 #pragma once
 
+#include <optional>
+
 #include "integrate/light_paths.h"
 #include "integrate/scatter.h"
 #include "integrate/trace.h"
@@ -53,12 +55,15 @@ struct SeenVertex {
   Ways others;     // PathEnd::others(), in which the camera made more of the path
 
   // ray: to the vertex; depth: bounces of the whole path; counts: expected samples of the camera's techniques there, of
-  // its surface; join: of connections that are made from there.
+  // its surface; join: of connections that are made from there; sharp: random, where a sharp lobe is asked for.
   template <class Counts>
   SeenVertex(const RenderScene& world, const LightPaths& light, const LightVertex& v, const Ray& ray, int depth,
-             Counts&& counts, Join join)
+             Counts&& counts, Join join, std::optional<float> sharp = {})
       : x(interact<N, K>(world.scene, world.geometry, ray, v.hit)) {
-    scatter<K>(x, v.towards, s);
+    if (sharp)
+      scatterSharp<K>(x, v.towards, *sharp, s);
+    else
+      scatter<K>(x, v.towards, s);
     if (!(s.cosLight > 0) || !(s.cosViewer > 0)) return;
     const Fractions<K> n = counts(x.surface);
     if (v.length == 1) {
@@ -75,8 +80,7 @@ struct SeenVertex {
       others = PathEnd{kByCamera, found, {}, v.density}.others(0);
     } else {
       f = total(s.f);
-      others =
-          PathEnd{join, light.power(light.perVertex(join)), v.back, v.density}.others(light.power(double(s.camera(n))));
+      others = light.endAt(v, join).others(light.power(double(s.camera(n))), !s.sharp);
     }
   }
 };
@@ -120,6 +124,7 @@ Chosen chooseVertex(const LightPaths& light, const X& x, uint32_t vertex, int de
     float each = s.flux * std::abs(here * there) * inverse * inverse;
     if (here < 0 && !through) each *= kBehind;
     if (there < 0 && !s.transmits) each *= kBehind;
+    if (s.sharp) each *= kBehind;
     each *= own / (own + kMatte * std::abs(there) * inverse * std::sqrt(inverse) * s.others);
     if (!(each > 0)) continue;
     sum += each;
@@ -174,10 +179,9 @@ Rgb connect(const RenderScene& world, const CameraVertex& c, const InteractionOf
   const Join join = joinAt(static_cast<uint32_t>(vertex));
   const double g = double(there.s.cosViewer) / double(d2), back = double(here.cosLight) / double(d2),
                own = power(c.light.perVertex(join));
-  const double reverse = double(lightDensity<K>(there.x.surface, there.s.p, there.s.cosViewer, there.s.cosLight));
+  const double reverse = double(there.s.light(there.x.surface));
   ways = there.others * power(double(here.camera(n)) * g);
-  ways += c.end.others(power(double(lightDensity<K>(x.surface, here.p, here.cosViewer, here.cosLight)))) *
-          power(reverse * back);
+  ways += c.end.others(power(double(here.light(x.surface)))) * power(reverse * back);
   ways += Ways::one(join, own);
   const double weight = own / ways.sum();
   return f * there.f * v.flux * left * static_cast<float>(weight * g / double(there.s.cosLight));

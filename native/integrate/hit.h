@@ -102,8 +102,10 @@ class HitEstimate {
     // of paths from the lights that bring the same: Mixture::scale()
     [[no_unique_address]] std::conditional_t<kConnects, Ways, std::nullptr_t> others{};
     bool sharp = false;  // a lobe's of one direction
-    bool ahead = true;   // it leaves the surface on the viewer's side
-    float moved = 0;     // how far light samples are, near the edge of the surface's own shadow
+    // of a sharp lobe's where paths from lights may take it, spread() of that; 0: they may not
+    [[no_unique_address]] std::conditional_t<kConnects, float, std::nullptr_t> spread{};
+    bool ahead = true;  // it leaves the surface on the viewer's side
+    float moved = 0;    // how far light samples are, near the edge of the surface's own shadow
     TechniqueMask own() const { return sharp ? maskOf(technique) : kAny; }
     bool otherwise() const { return kGeneral && lit.any; }
   };
@@ -161,6 +163,7 @@ class HitEstimate {
     if (s.sharp) {
       s.f[t] = x_.surface.weight(draws_.lobe[s.k], wi, wo_);
       s.p[t] = 1;
+      if constexpr (kConnects) ofLobe(s, wi);
       if (by != nullptr) [[unlikely]]
         by->add(t, x_.surface.component(draws_.lobe[s.k]), s.f[t]);
       return true;
@@ -286,7 +289,8 @@ class HitEstimate {
       const auto meet = [&](const EmitterHit& e) {
         if (isHidden(e.pdf)) return;
         s.p[kLight] = e.pdf, s.counted = e.counted;
-        if constexpr (kConnects) s.others = e.pdf > 0 ? byLight(s, e.emitter, d, e.distance) : Ways{};
+        if constexpr (kConnects)
+          s.others = e.pdf > 0 && !world_.isHidden(ray) ? byLight(s, e.emitter, d, e.distance) : Ways{};
         weigh(s, kGeneral ? e.radiance * seenThrough : e.radiance, e.visibility);
       };
       world_.emitters.along(ray, tMax, escaped, static_cast<int>(plan_.vertex), &view_, meet,
@@ -301,7 +305,8 @@ class HitEstimate {
       s.p[kLight] = found.pdf, s.counted = found.counted;
       Rgb radiance = interact<N, K>(world_.scene, world_.geometry, ray, hit).emission;
       if constexpr (kGeneral) radiance *= seenThrough;
-      if constexpr (kConnects) s.others = found.pdf > 0 ? byLight(s, found.emitter, d, hit.t) : Ways{};
+      if constexpr (kConnects)
+        s.others = found.pdf > 0 && !world_.isHidden(ray) ? byLight(s, found.emitter, d, hit.t) : Ways{};
       if (!isHidden(found.pdf)) weigh(s, radiance, world_.geometry.placements[hit.placement].visibility);
     }
     if constexpr (kGeneral)
@@ -328,30 +333,44 @@ class HitEstimate {
 
   // ---- paths from the lights ----
 
+  // A sharp lobe's sample is of that lobe alone, not of its technique's.
+  void ofLobe(Sample& s, const Vec3<T>& wi) const {
+    const auto& lobe = draws_.lobe[s.k];
+    const float share = x_.surface.share(lobe);
+    s.f[s.technique] *= share, s.p[s.technique] = share;
+    if (isReversible(x_.surface.normal(lobe), x_.geometric, inWorld(x_, wi), x_.wo))
+      s.spread = x_.surface.spread(lobe, wi, wo_);
+  }
+
+  // The density at which a path from the lights goes on to the viewer.
+  double byLightDensity(const Sample& s, float cosLight) const {
+    if (!s.sharp) return double(lightDensity<K>(x_.surface, s.p, std::abs(dot(x_.geometric, x_.wo)), cosLight));
+    return s.spread > 0 ? double(sharpLightDensity<K>(x_.surface, s.p, s.spread)) : 0;
+  }
+
   // The densities of ways to find an emitter in a direction in which paths from the lights made some of the vertices.
   Ways byLight(const Sample& s, uint32_t emitter, Vec3f direction, float distance) const {
-    if (plan_.camera == nullptr || s.sharp) return {};
+    if (plan_.camera == nullptr) return {};
     const CameraVertex& camera = *plan_.camera;
-    const float cosLight = std::abs(dot(x_.geometric, direction)), cosViewer = std::abs(dot(x_.geometric, x_.wo));
+    const float cosLight = std::abs(dot(x_.geometric, direction));
     const double rays = double(camera.light.emission.density(emitter, x_.position, direction, distance, x_.path.time));
     const WeightPower& power = camera.light.power;
-    return camera.end.others(power(double(lightDensity<K>(x_.surface, s.p, cosViewer, cosLight)))) *
-           power(rays * double(cosLight));
+    return camera.end.others(power(byLightDensity(s, cosLight)), !s.sharp) * power(rays * double(cosLight));
   }
 
   // What the camera's end is at the next vertex, t away, but for the cosine there.
   PathEnd endAfter(const Sample& s, TechniqueMask used, Vec3f direction, float t) const {
     const CameraVertex& camera = *plan_.camera;
     const WeightPower& power = camera.light.power;
-    const float cosLight = std::abs(dot(x_.geometric, direction)), cosViewer = std::abs(dot(x_.geometric, x_.wo));
+    const float cosLight = std::abs(dot(x_.geometric, direction));
     double q = 0;
     for (size_t k = 0; k < K; ++k)
       if (has(used, k)) q += double(mixture_.n[k]) * double(s.p[k]);
-    const double reverse = s.sharp ? 0 : double(lightDensity<K>(x_.surface, s.p, cosViewer, cosLight)),
-                 d2 = double(t) * double(t);
+    const double d2 = double(t) * double(t);
     const Join join = joinAt(plan_.vertex);
     return {join, s.sharp ? 0 : power(camera.light.perVertex(join)),
-            camera.end.others(power(reverse), !s.sharp) * power(double(cosLight) / d2), power(q / d2)};
+            camera.end.others(power(byLightDensity(s, cosLight)), !s.sharp) * power(double(cosLight) / d2),
+            power(q / d2)};
   }
 
   // For a pilot. p, used: densities of the techniques that find what the sample brings; shared: with paths from the

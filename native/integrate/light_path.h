@@ -22,6 +22,7 @@ enum LightDimension : uint32_t {
   kLightLens,
   kLightBounce,
   kLightStraight,
+  kLightLobe,
   kLightPerVertex = 16
 };
 
@@ -54,24 +55,25 @@ template <size_t K>
 struct Onward {
   Vec3f direction{0, 0, 1};
   float pdf = 0;
+  bool sharp = false;  // by a lobe of one direction; pdf: how often it is taken
 };
 
 template <size_t K, class X>
 Onward<K> onward(const X& x, const Sampler& sampler, uint32_t key, uint32_t dimension, uint32_t index) {
   using Of = Techniques<K>;
-  constexpr float kAny = 0.1f;
   const auto& surface = x.surface;
-  Fractions<K> a = albedoFractions<K>(surface);
-  float all = 0;
+  const auto sharp = [&](size_t t) { return isSharp<K>(surface, t); };
+  const Fractions<K> a = albedoFractions<K>(surface);
+  float all = 0, rough = 0;
   for (size_t t = 0; t < Of::kSurface; ++t) {
-    if (t < Of::kLobes && surface.delta(t)) a[t] = 0;
     all += a[t];
+    if (!sharp(t)) rough += a[t];
   }
   Onward<K> to;
   const bool through = surface.transmits();
   float choice = sampler.get1D(key, dimension + kLightTechnique, index);
   const Vec2f u = sampler.get2D(key, dimension + kLightPoint, index);
-  const float any = all > 0 ? kAny : 1;
+  const float any = rough > 0 ? 0.1f : all > 0 ? 0.01f : 1;
   if (choice < any) {
     choice /= any;
     const float side = !through || choice < 0.5f ? 1.0f : -1.0f;
@@ -97,20 +99,28 @@ Onward<K> onward(const X& x, const Sampler& sampler, uint32_t key, uint32_t dime
         if (!(dot(d, d) > T(0))) return false;
         to.direction =
             x.frame.toWorld(Vec3f{static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)});
-        return !from.lost && from.transmits == (dot(x.geometric, to.direction) < 0);
+        if (from.lost || from.transmits != (dot(x.geometric, to.direction) < 0)) return false;
+        if (sharp(t)) {
+          to.sharp = true;
+          surface.eachSharp(d, Vec3<T>{T(wo.x), T(wo.y), T(wo.z)}, [&](size_t slot, const auto& lobe) {
+            to.pdf += (1 - any) * a[slot] / all * surface.share(lobe);
+          });
+        }
+        return true;
       };
       const bool found = surface.needsDouble(dot(x.frame.z, x.wo)) ? in(double{}) : in(float{});
       if (!found) return {};
     }
   }
   to.direction = normalize(to.direction);
+  if (to.sharp) return to;
   Scattering<K> s;
   scatter<K>(x, to.direction, s);
   if (!(s.cosLight > 0)) return {};
   const float byCosine = through || s.ahead ? s.cosLight * (1 / kPi<float>)*(through ? 0.5f : 1.0f) : 0;
   to.pdf = any * byCosine;
   if (all > 0)
-    for (size_t t = 0; t < Of::kSurface; ++t) to.pdf += (1 - any) * a[t] / all * s.p[t];
+    for (size_t t = 0; t < Of::kSurface; ++t) to.pdf += sharp(t) ? 0 : (1 - any) * a[t] / all * s.p[t];
   return to;
 }
 
@@ -162,15 +172,13 @@ void splat(const KernelInput<K>& in, const LightVertex& v, Vec2f lens, std::vect
 }
 
 // Adds a vertex to those that are connected.
-template <class X>
+template <size_t K, class X>
 void keep(const LightPaths& light, const LightVertex& v, const X& x, float cosLight, LightList& to) {
-  const double others = PathEnd{kAtLater, light.power(light.perVertex(kAtLater)), v.back, v.density}
-                            .others(light.power(1 / kPi<double>))
-                            .sum();
+  const double others = light.endAt(v, kAtLater).others(light.power(1 / kPi<double>)).sum();
   to.vertices.push_back(v);
   to.sketches.push_back({v.position, dot(x.geometric, v.towards) < 0 ? -x.geometric : x.geometric,
                          luminance(absolute(v.flux)) / cosLight, static_cast<float>(std::min(others, 1e30)), v.length,
-                         x.surface.transmits()});
+                         x.surface.transmits(), onlySharp<K>(x.surface)});
 }
 
 // Adds the vertices of a path, and what they bring to the film. index: of the path, among all of the image.
@@ -222,16 +230,17 @@ void traceLightPath(const KernelInput<K>& in, uint32_t index, LightList& to, Cou
     v.flux *= left;
     left = {1, 1, 1};
     if (isBlack(v.flux)) return;
-    if (light.connects()) keep(light, v, x, cosLight, to);
+    if (light.connects()) keep<K>(light, v, x, cosLight, to);
     if (light.toFilm) splat<N, K>(in, v, in.sampler.get2D(key, dimension + kLightLens, index), to.splats, counts);
     if (length == in.limits.depth) return;
 
     const auto next = detail::onward<K>(x, in.sampler, key, dimension, index);
     if (!(next.pdf > 0)) return;
+    const auto lobe = next.sharp ? std::optional(in.sampler.get1D(key, dimension + kLightLobe, index)) : std::nullopt;
     const SeenVertex<N, K> seen(world, light, v, detail::reversed(next.direction, time, 1), length - 1,
-                                LaterCounts<K>{world.emitters.any()}, kAtLater);
+                                LaterCounts<K>{world.emitters.any()}, kAtLater, lobe);
     if (!(maxComponent(seen.f) > 0)) return;
-    const Rgb step = seen.f * (seen.s.cosViewer / (seen.s.cosLight * next.pdf));
+    const Rgb step = seen.f * (seen.s.spread * seen.s.cosViewer / (seen.s.cosLight * next.pdf));
     v.flux *= step;
     survived *= maxComponent(step);
     // what the light's path carries on, as the camera's, but for cosines that it is told without
@@ -244,7 +253,8 @@ void traceLightPath(const KernelInput<K>& in, uint32_t index, LightList& to, Cou
     if (light.countsBounces && length > 1)
       ++v.bounces[detail::bounceOf<K>(seen.x.surface, seen.s, LaterCounts<K>{true}(seen.x.surface),
                                       in.sampler.get1D(key, dimension + kLightBounce, index))];
-    v.density = light.power(double(lightDensity<K>(seen.x.surface, seen.s.p, seen.s.cosViewer, seen.s.cosLight)));
+    v.joins = !next.sharp;
+    v.density = light.power(double(seen.s.light(seen.x.surface)));
     v.back = seen.others * light.power(double(seen.s.cosViewer));
     ray.origin = x.leave(next.direction), ray.direction = next.direction;
     ray.tMin = Ray{}.tMin;

@@ -24,6 +24,7 @@ struct LightVertex {
   Rgb flux;
   double density;  // as of a PathEnd; of a first vertex per solid angle of the emitter
   Ways back;
+  bool joins = true;  // to the vertex before it, whose lobe was not a sharp one
   uint32_t emitter;
   float distance;                                // to the emitter, of a first vertex
   uint16_t length;                               // 1: the first after the emitter
@@ -37,7 +38,7 @@ struct LightSketch {
   float flux;              // luminance, over the cosine
   float others;            // about PathEnd::others(), without the geometry of the joining ray
   uint16_t length;
-  bool transmits;
+  bool transmits, sharp;  // sharp: has no lobes but those of one direction, seen from where the light came
 };
 
 // Light that has come to the film.
@@ -84,6 +85,10 @@ struct LightPaths {
   static constexpr double kWorth = 4;
   double perVertex(Join join) const {
     return paths > 0 ? kWorth * (join == kAtFirst ? connections : laterConnections) / verticesPerPath : 0;
+  }
+  // What one end knows of the other's ways at a vertex of a path from a light.
+  PathEnd endAt(const LightVertex& v, Join join) const {
+    return {join, v.joins ? power(perVertex(join)) : 0, v.back, v.density};
   }
   // Rays to the film for each camera ray through a pixel.
   double perPixel() const { return toFilm ? paths * pixelsPerRay : 0; }

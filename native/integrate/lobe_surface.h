@@ -275,7 +275,29 @@ class LobeSurface {
     from.lost = !(wi.z != T(0)) || !leaves(l, wi.z > T(0));
     return global(l, wi);
   }
+  // The sharp lobes of which a sample goes from wo to wi: to(slot, sample).
+  template <class T, class To>
+  void eachSharp(Vec3<T> wi, Vec3<T> wo, To&& to) const {
+    constexpr T kApart2 = T(1e-6);  // of directions that are one but for rounding, squared
+    for (int i = 0; i < count_; ++i) {
+      const Lobe& l = lobe_[i];
+      if (!isDelta(l.kind)) continue;
+      const Vec3<T> asked = local(l, wi), from = wardmis::sample(l, local(l, wo), Vec2<T>{}, T(0)) - asked;
+      if (dot(from, from) < kApart2 && asked.z != T(0) && leaves(l, asked.z > T(0)))
+        to(size_t{slot_[i]}, Sample{i, true, asked.z < T(0)});
+    }
+  }
   Component component(const Sample& from) const { return componentOf(lobe_[from.lobe], !from.transmits); }
+  // How often its technique takes the sample's lobe.
+  float share(const Sample& from) const { return share_[from.lobe]; }
+  Vec3f normal(const Sample& from) const { return frame_[lobe_[from.lobe].frame].z; }  // world
+  // Of a sharp lobe's sample: solid angle of viewers over that of the light that it sends them.
+  template <class T>
+  float spread(const Sample& from, Vec3<T> wi, Vec3<T> wo) const {
+    const Lobe& l = lobe_[from.lobe];
+    if (l.kind != LobeKind::kSharpRefraction) return 1;
+    return static_cast<float>(T(l.eta) * T(l.eta) * std::abs(local(l, wi).z / local(l, wo).z));
+  }
   // Of a sharp lobe's sample: f cos / pdf, the choice of the lobe included.
   template <class T>
   Rgb weight(const Sample& from, Vec3<T> wi, Vec3<T> wo) const {

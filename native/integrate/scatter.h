@@ -31,6 +31,23 @@ Rgb total(const std::array<Rgb, I>& f) {
   return sum;
 }
 
+// The same of a sharp lobe, per solid angle of the light's one direction. p: how often the lobe is drawn; spread: of
+// viewers over light (LobeSurface::spread()).
+template <size_t K, class S>
+float sharpLightDensity(const S& surface, const Fractions<K>& p, float spread) {
+  return lightDensity<K>(surface, p, 1, spread);
+}
+
+// Whether a sharp lobe has the same normal seen from where its light comes as from its viewer. Neither may look so that
+// what a mirror showed it would lie behind the face, or nearly: such normals are bent (program/surface.h).
+inline bool isReversible(Vec3f normal, Vec3f face, Vec3f wi, Vec3f wo) {
+  constexpr float kLeast = 0.011f;  // normals are bent below .01
+  const auto shown = [&](Vec3f w) {
+    return dot(face, normal * (2 * dot(normal, w)) - w) * (dot(face, w) < 0 ? -1 : 1);
+  };
+  return shown(wi) > kLeast && shown(wo) > kLeast;
+}
+
 // One direction at a surface.
 template <size_t K>
 struct Scattering {
@@ -41,12 +58,18 @@ struct Scattering {
   bool ahead = true;                  // it leaves on the viewer's side
   float local = 0;                    // its cosine with the shading normal
   float cosLight = 0, cosViewer = 0;  // absolute, with the face's
+  bool sharp = false;                 // of a lobe of one direction, as scatterSharp() has it
+  float spread = 1;                   // of that
 
   // The density of the camera's path, with its expected numbers of samples.
   float camera(const Fractions<K>& n) const {
     float q = 0;
     for (size_t t = 0; t < Techniques<K>::kSurface; ++t) q += n[t] * p[t];
     return q;
+  }
+  template <class S>
+  float light(const S& surface) const {
+    return sharp ? sharpLightDensity<K>(surface, p, spread) : lightDensity<K>(surface, p, cosViewer, cosLight);
   }
 };
 
@@ -64,6 +87,43 @@ void scatter(const X& x, Vec3f wi, Scattering<K>& s) {
     const Vec3<T> d = local(wi);
     s.local = static_cast<float>(d.z);
     if (side != 0) x.surface.evaluate(d, local(x.wo), s.ahead, s.f, s.p, s.lit);
+  };
+  if (x.surface.needsDouble(dot(x.frame.z, x.wo)))
+    in(double{});
+  else
+    in(float{});
+}
+
+// The same where a sharp lobe sends light from wi to the viewer: f is f cos over the density of wi, and p how often the
+// lobe is drawn. Of several, one at random (u), which stands for all. Without any, f and p are zero.
+template <size_t K, class X>
+void scatterSharp(const X& x, Vec3f wi, float u, Scattering<K>& s) {
+  const float side = dot(x.geometric, wi);
+  s.sharp = true, s.ahead = side > 0;
+  s.cosLight = std::abs(side), s.cosViewer = std::abs(dot(x.geometric, x.wo));
+  const auto in = [&]<class T>(T) {
+    const auto local = [&](Vec3f w) {
+      const Vec3f l = x.frame.toLocal(w);
+      return Vec3<T>{T(l.x), T(l.y), T(l.z)};
+    };
+    const Vec3<T> d = local(wi), wo = local(x.wo);
+    float all = 0;
+    x.surface.eachSharp(d, wo, [&](size_t slot, const auto& lobe) {
+      if (lobe.transmits == s.ahead || !isReversible(x.surface.normal(lobe), x.geometric, wi, x.wo)) return;
+      const Rgb each = x.surface.weight(lobe, d, wo) * x.surface.share(lobe);
+      const float strength = maxComponent(absolute(each));
+      if (!(strength > 0)) return;
+      all += strength;
+      if (u * all >= strength && all > strength) {
+        u = (u * all - strength) / (all - strength);
+        return;
+      }
+      u = u * all / strength;
+      s.f = {}, s.p = {};
+      s.f[slot] = each / strength, s.p[slot] = x.surface.share(lobe);
+      s.spread = x.surface.spread(lobe, d, wo);
+    });
+    for (Rgb& value : s.f) value *= all;
   };
   if (x.surface.needsDouble(dot(x.frame.z, x.wo)))
     in(double{});
@@ -95,6 +155,11 @@ struct LightEdge {
 template <size_t K, class X>
 LightEdge<K> lightEdge(const X& x, const Scattering<K>& s, const LightSample& light) {
   LightEdge<K> edge;
+  if (s.sharp) {
+    edge.surfaces = !light.exclusive;
+    if (edge.surfaces) edge.f = total(seen<K>(x.surface, s.f, light.visibility, s.ahead));
+    return edge;
+  }
   const float moved = x.smooth.cutoff > 0 ? x.smooth.amount(s.local, dot(x.geometric, light.direction)) : 0;
   edge.surfaces = !light.exclusive;
   edge.light = moved > 0 ? 0 : light.pdf;

@@ -26,6 +26,19 @@ Fractions<K> albedoFractions(const S& s) {
   return a;
 }
 
+// Whether a technique has lobes of one direction, and no others.
+template <size_t K, class S>
+bool isSharp(const S& s, size_t technique) {
+  return technique < Techniques<K>::kLobes && s.delta(technique);
+}
+template <size_t K, class S>
+bool onlySharp(const S& s) {
+  if (s.hasDiffuse()) return false;
+  for (size_t l = 0; l < Techniques<K>::kLobes; ++l)
+    if (s.hasLobe(l) && !isSharp<K>(s, l)) return false;
+  return true;
+}
+
 // The techniques that a surface has, where emitters are aimed at or not, and where surface samples find anything or
 // not.
 template <size_t K, class S>

@@ -13,25 +13,6 @@ using namespace test;
 
 constexpr Rgb kWhite{1, 1, 1};
 
-Closure with(Closure c, size_t scalar, float value) {
-  c.scalars[scalar].value = value;
-  return c;
-}
-Closure rough(Closure c, float alpha, Glossy distribution = Glossy::kMultiGgx) {
-  c.scalars[0].value = alpha;
-  if (c.type == ClosureType::kGlossy) c.scalars[1].value = alpha;
-  c.distribution = distribution;
-  return c;
-}
-
-Material material(std::vector<Closure> closures) {
-  Material m;
-  m.name = "lobes";
-  m.closures = std::move(closures);
-  m.transparent = std::any_of(m.closures.begin(), m.closures.end(), mayBeTransparent);
-  return m;
-}
-
 // A sphere, seen so that it fills half of the image.
 Scene ball(std::vector<Closure> closures, int resolution = 16) {
   Scene scene;

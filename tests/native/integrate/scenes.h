@@ -29,6 +29,25 @@ inline Closure closure(ClosureType type, Rgb color = {1, 1, 1}, float weight = 1
   return c;
 }
 
+inline Closure with(Closure c, size_t scalar, float value) {
+  c.scalars[scalar].value = value;
+  return c;
+}
+inline Closure rough(Closure c, float alpha, Glossy distribution = Glossy::kMultiGgx) {
+  c.scalars[0].value = alpha;
+  if (c.type == ClosureType::kGlossy) c.scalars[1].value = alpha;
+  c.distribution = distribution;
+  return c;
+}
+
+inline Material material(std::vector<Closure> closures) {
+  Material m;
+  m.name = "lobes";
+  m.closures = std::move(closures);
+  m.transparent = std::any_of(m.closures.begin(), m.closures.end(), mayBeTransparent);
+  return m;
+}
+
 inline void addMesh(Scene& scene, std::vector<Vec3f> positions, std::vector<uint32_t> indices, int material,
                     std::vector<Vec3f> normals = {}) {
   MeshPart part;
