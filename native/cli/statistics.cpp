@@ -59,11 +59,14 @@ json pixelSamples(const FilmBuffer& film, double gain) {
 }
 
 // Of paths from the lights; null: there are none.
-json waysJson(const Statistics& s) {
+json waysJson(const RenderSettings& settings, const Statistics& s) {
   if (!s.ways) return {};
-  return {{"samples_at_hit", s.samplesAtHit},   {"light_paths", s.ways->paths},
-          {"connections", s.ways->connections}, {"later_connections", s.ways->laterConnections},
-          {"light_tracing", s.ways->film},      {"expected_gain", s.wayGain}};
+  return {{"samples_at_hit", s.ways->atHit * settings.samplesPerHit},
+          {"light_paths", s.ways->paths},
+          {"connections", s.ways->connections},
+          {"later_connections", s.ways->laterConnections},
+          {"light_tracing", s.lightTracing},
+          {"expected_gain", s.wayGain}};
 }
 
 json statisticsJson(const std::string& path, const RenderSettings& settings, const Scene& scene, const Statistics& s,
@@ -81,7 +84,7 @@ json statisticsJson(const std::string& path, const RenderSettings& settings, con
          {"cpu_seconds", {{"pilot", s.pilotCpuSeconds}, {"render", s.renderCpuSeconds}}},
          {"samples_per_pixel", film.samples},
          {"pixel_samples", pixelSamples(film, s.pixelGain)},
-         {"ways", waysJson(s)},
+         {"ways", waysJson(settings, s)},
          {"hidden_lights", s.hiddenLights < 1 ? json(s.hiddenLights) : json()},
          {"pilot_in_image", s.allocated ? json(s.pilotKept) : json()},
          {"pixels", film.pixels.size()},

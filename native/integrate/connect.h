@@ -105,18 +105,19 @@ struct Chosen {
   float weight = 0;  // 0: none would bring anything
 };
 template <class X>
-Chosen chooseVertex(const LightPaths& light, const X& x, uint32_t vertex, int depth, uint32_t key) {
+Chosen chooseVertex(const CameraVertex& c, const X& x, uint32_t vertex, uint32_t key) {
+  const LightPaths& light = c.light;
   constexpr uint32_t kAmong = 8;
   constexpr float kBehind = 0.01f, kMatte = 1 / kPi<float>;  // the latter: a density
   const bool through = x.surface.transmits();
-  const auto own = static_cast<float>(light.perVertex(joinAt(vertex)));
+  const auto own = static_cast<float>(c.perVertex(vertex));
   Chosen chosen;
   float sum = 0, value = 0;
   for (uint32_t k = 0; k < kAmong; ++k) {
     const uint32_t random = combine(key, 2 * k);
     const auto i = static_cast<size_t>(uint64_t{random} * light.sketches.size() >> 32);
     const LightSketch& s = light.sketches[i];
-    if (static_cast<int>(vertex) + 1 + s.length > depth) continue;
+    if (static_cast<int>(vertex) + 1 + s.length > c.depth) continue;
     const Vec3f to = s.position - x.position;
     const float d2 = dot(to, to);
     if (!(d2 > 0)) continue;
@@ -178,9 +179,10 @@ Rgb connect(const RenderScene& world, const CameraVertex& c, const InteractionOf
   const WeightPower& power = c.light.power;
   const Join join = joinAt(static_cast<uint32_t>(vertex));
   const double g = double(there.s.cosViewer) / double(d2), back = double(here.cosLight) / double(d2),
-               own = power(c.light.perVertex(join));
+               own = power(c.perVertex(static_cast<uint32_t>(vertex)));
   const double reverse = double(there.s.light(there.x.surface));
   ways = there.others * power(double(here.camera(n)) * g);
+  ways.of[kAtLater] *= power(c.ways.laterConnections);
   ways += c.end.others(power(double(here.light(x.surface)))) * power(reverse * back);
   ways += Ways::one(join, own);
   const double weight = own / ways.sum();

@@ -26,6 +26,13 @@ struct Counts {
   uint64_t underflows = 0;
   RareCounts rare;
 
+  // What more samples at a hit and more connections multiply.
+  struct Join {
+    uint64_t rays = 0;
+    std::array<uint64_t, 2> joined{};
+  };
+  Join join() const { return {sum(rays), joined}; }
+
   static uint64_t sum(const PerTechnique& c) { return std::accumulate(c.begin(), c.end(), uint64_t{0}); }
   uint64_t allRays() const { return cameraRays + sum(rays) + lightRays + connections; }
   Counts& operator+=(const Counts& b) {

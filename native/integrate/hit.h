@@ -368,7 +368,7 @@ class HitEstimate {
       if (has(used, k)) q += double(mixture_.n[k]) * double(s.p[k]);
     const double d2 = double(t) * double(t);
     const Join join = joinAt(plan_.vertex);
-    return {join, s.sharp ? 0 : power(camera.light.perVertex(join)),
+    return {join, s.sharp ? 0 : power(camera.perVertex(plan_.vertex)),
             camera.end.others(power(byLightDensity(s, cosLight)), !s.sharp) * power(double(cosLight) / d2),
             power(q / d2)};
   }
@@ -380,25 +380,24 @@ class HitEstimate {
     const CameraVertex& camera = *plan_.camera;
     Ways ways = shared ? s.others : Ways{};
     ways += Ways::one(kByCamera, 1 / double(mixture_.scale(s.technique, p, used)));
-    if (plan_.vertex > 0) return camera.note(value, ways);
+    if (plan_.vertex > 0 || camera.notes->scatter == nullptr) return camera.note(value, ways);
     const float v = luminance(absolute(value * camera.throughput));
     WayScatter& scatter = camera.notes->scatter[s.technique];
-    camera.notes->candidates.add(scatter.sums, v, ways);
+    camera.notes->tally.candidates.add(scatter.sums, v, ways);
     scatter.sum += v, scatter.squares += v * v;
   }
 
   void connectLight() {
     const CameraVertex& camera = *plan_.camera;
     const LightPaths& light = camera.light;
-    const auto k = static_cast<uint32_t>(light.connectionsAt(plan_.vertex));
+    const auto k = static_cast<uint32_t>(camera.connections(plan_.vertex));
     if (light.vertices.empty() || k == 0) return;
     const uint32_t dimension = kConnectionPoint + plan_.vertex * kConnectionsPerVertex;
     const float scale = 1 / (static_cast<float>(k) * static_cast<float>(light.kept));
     counts_.joined[plan_.vertex == 0 ? 0 : 1] += k;
     for (uint32_t m = 0; m < k; ++m) {
       const uint32_t index = plan_.index * k + m;
-      const Chosen chosen =
-          chooseVertex(light, x_, plan_.vertex, camera.depth, combine(combine(plan_.pixelKey, dimension), index));
+      const Chosen chosen = chooseVertex(camera, x_, plan_.vertex, combine(combine(plan_.pixelKey, dimension), index));
       if (!(chosen.weight > 0)) continue;
       const Vec2f bounce = light.countsBounces ? sampler_.get2D(plan_.pixelKey, dimension + 1, index) : Vec2f{};
       Ways ways;

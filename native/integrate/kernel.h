@@ -32,9 +32,13 @@ struct KernelInput {
   int x0, y0;                         // of the border in the full frame
   int side = 1;                       // of a pixel of the film, in pixels of the image; more for a coarse pilot
   const LightPaths* light = nullptr;  // null: there are no paths from the lights
-  // For a pilot that chooses how many there are: of each pixel; null: there is none.
-  const WayCandidates* wayCandidates = nullptr;
-  std::vector<WaySums>* waySums = nullptr;
+  const WayMap* ways = nullptr;       // how many of them there are for each pixel; null: as many as are asked for
+  WayTally* wayPilot = nullptr;       // where a pilot that chooses how many notes what samples bring; null: it does not
+
+  // x, y: of the film.
+  PixelWays waysAt(int x, int y) const {
+    return ways != nullptr ? ways->at(x, y) : PixelWays{samplesPerHit, light->connections, light->laterConnections};
+  }
 };
 
 // The fractions at the first hit of a camera's path to which paths from the lights are connected.

@@ -162,12 +162,10 @@ void splat(const KernelInput<K>& in, const LightVertex& v, Vec2f lens, std::vect
   ++counts.lightRays;
   const Rgb left = transmittance<N, K, false>(world, ray);
   if (isBlack(left) || ray.path.transparent > world.mostTransparent) return;
-  const double camera = double(seen->importance) * double(at.s.cosViewer), own = light.power(light.perPixel());
+  const double camera = double(seen->importance) * double(at.s.cosViewer);
   Ways ways = at.others * light.power(camera);
-  ways += Ways::one(kAtFilm, own);
-  const double weight = own / ways.sum();
-  const Rgb value =
-      at.f * v.flux * left * static_cast<float>(weight * camera / (double(at.s.cosLight) * double(light.paths)));
+  ways += Ways::one(kAtFilm, light.power(light.perPixel()));
+  const Rgb value = at.f * v.flux * left * static_cast<float>(camera / (double(at.s.cosLight) * double(light.paths)));
   splats.push_back({seen->px, seen->py, value, ways});
 }
 

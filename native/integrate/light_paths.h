@@ -44,8 +44,8 @@ struct LightSketch {
 // Light that has come to the film.
 struct Splat {
   float px, py;  // pixels of the full frame
-  Rgb value;     // integrated over the film's area, in pixels
-  Ways ways;     // all by which it may come
+  Rgb value;     // integrated over the film's area, in pixels, without a weight
+  Ways ways;     // all by which it may come, with as many samples at a hit as are asked for and one connection
 };
 
 // What some paths bring.
@@ -66,7 +66,7 @@ struct LightPaths {
   WeightPower power{};
   uint32_t paths = 0;          // for each camera sample of the image
   uint32_t kept = 0;           // of these, whose vertices are there
-  int connections = 1;         // at the first vertex of a camera path
+  int connections = 1;         // at the first vertex of a camera path; where pixels differ, at least their mean
   int laterConnections = 1;    // at each other
   double verticesPerPath = 1;  // expected: any number that is the same for all is right
   bool toFilm = true;
@@ -78,17 +78,14 @@ struct LightPaths {
   std::vector<Rgb> film{};              // of each pixel of the border: what came to it, over the number of paths
 
   bool connects() const { return connections > 0 || laterConnections > 0; }
-  // Connections of a camera's vertex, by its number.
-  int connectionsAt(uint32_t vertex) const { return vertex == 0 ? connections : laterConnections; }
-  // To each vertex of one path, as if all were made. For weights: a connection is chosen among several, and is worth
-  // more than one at random.
+  // Of one connection, to each vertex of one path, as if all were made. For weights: a connection is chosen among
+  // several, and is worth more than one at random.
   static constexpr double kWorth = 4;
-  double perVertex(Join join) const {
-    return paths > 0 ? kWorth * (join == kAtFirst ? connections : laterConnections) / verticesPerPath : 0;
-  }
-  // What one end knows of the other's ways at a vertex of a path from a light.
+  double perVertex() const { return paths > 0 ? kWorth / verticesPerPath : 0; }
+  // Of a path from a light at its vertex, with one connection of each camera vertex: how many there are depends on the
+  // pixel.
   PathEnd endAt(const LightVertex& v, Join join) const {
-    return {join, v.joins ? power(perVertex(join)) : 0, v.back, v.density};
+    return {join, v.joins ? power(perVertex()) : 0, v.back, v.density};
   }
   // Rays to the film for each camera ray through a pixel.
   double perPixel() const { return toFilm ? paths * pixelsPerRay : 0; }
@@ -96,24 +93,27 @@ struct LightPaths {
 
 // A vertex of a camera's path, to which they are connected.
 struct CameraVertex {
-  explicit CameraVertex(const LightPaths& paths) : light(paths) {}
+  CameraVertex(const LightPaths& paths, const PixelWays& counts) : light(paths), ways(counts) {}
 
   const LightPaths& light;
+  const PixelWays& ways;  // of the pixel
+  int connections(uint32_t vertex) const { return vertex == 0 ? ways.connections : ways.laterConnections; }
+  double perVertex(uint32_t vertex) const { return light.perVertex() * connections(vertex); }
   PathEnd end;
   std::array<int, kBounceKinds> left{};      // bounces that a path may still make
   int depth = 1;                             // most surface hits of a whole path
   Scratch<PathEnd, kMaxSamplesPerHit> next;  // of each continuation, but for the cosine where it ends
   // Where a pilot notes what the samples bring; null: nobody does.
   struct Notes {
-    const WayCandidates& candidates;
-    WaySums& sums;        // of the pixel
-    WayScatter* scatter;  // of each technique at the first hit
+    WayTally& tally;
+    size_t pixel;
+    WayScatter* scatter;  // of each technique at the first hit; null where the candidates are not asked
   };
   const Notes* notes = nullptr;
   Rgb before{1, 1, 1}, throughput{1, 1, 1};  // of what is seen at the first hit, and here
 
-  void note(Rgb value, const Ways& ways) const {
-    notes->candidates.add(notes->sums, luminance(absolute(value * throughput)), ways);
+  void note(Rgb value, const Ways& all) const {
+    notes->tally.note(notes->pixel, luminance(absolute(value * throughput)), all);
   }
 
   // At a surface, whose face the ray meets at this cosine. reached: by paths from the lights.

@@ -74,10 +74,12 @@ void addToFilm(const KernelInput<K>& in, const std::vector<LightList>& lists, st
             const float share =
                 in.filter.density({fx - 0.5f - static_cast<float>(x), fy - 0.5f - static_cast<float>(y)});
             if (!(share > 0)) continue;
-            const Rgb value = s.value * (share / (side * side));
             const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
+            const Ways ways = s.ways * in.waysAt(x, y).factors(in.samplesPerHit, in.light->power);
+            const auto weight = static_cast<float>(ways.of[kAtFilm] / ways.sum());
+            const Rgb value = s.value * (weight * share / (side * side));
             film[pixel] += value;
-            if (in.waySums != nullptr) in.wayCandidates->add((*in.waySums)[pixel], luminance(absolute(value)), s.ways);
+            if (in.wayPilot != nullptr) in.wayPilot->note(pixel, luminance(absolute(value)), ways);
           }
         }
       }

@@ -5,6 +5,7 @@
 
 #include "film/film.h"
 #include "integrate/hit.h"
+#include "math/square_map.h"
 
 namespace wardmis {
 
@@ -35,16 +36,8 @@ struct PixelFractions {
   int samples = 0;  // at a hit
 };
 
-// The fractions of an image, one set for each square of `side` x `side` pixels.
 template <size_t K>
-struct FractionsMap {
-  int side = 1, width = 0;
-  std::vector<PixelFractions<K>> squares;
-
-  const PixelFractions<K>& at(int x, int y) const {
-    return squares[static_cast<size_t>(y / side) * static_cast<size_t>(width) + static_cast<size_t>(x / side)];
-  }
-};
+using FractionsMap = SquareMap<PixelFractions<K>>;
 
 // A pilot of `auto` is coarse: it has one pixel for a square of the image's, since it is no part of the image.
 inline constexpr int kCoarse = 2;  // pixels, a side

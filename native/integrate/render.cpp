@@ -292,7 +292,7 @@ SampleCost<K> countedCost(const Counts& counts, int samplesPerHit) {
 }
 
 template <size_t K>
-FilmBuffer renderWith(const BuiltScene& built, const RenderSettings& settings, Statistics& stats,
+FilmBuffer renderWith(const BuiltScene& built, const RenderSettings& settings, const WayChoice& ways, Statistics& stats,
                       const RenderObserver& observer) {
   const Film& frame = built.scene.film;
   const Counts wayPilot = stats.pilotCounts;
@@ -311,12 +311,14 @@ FilmBuffer renderWith(const BuiltScene& built, const RenderSettings& settings, S
   stats.techniques = setup.techniques;
   stats.techniqueNames = built.techniqueNames();
   if ((setup.needs & kNeedsConnections) != 0) {
-    stats.ways = settings.fromLights, stats.samplesAtHit = settings.samplesPerHit;
-    stats.ways->film = settings.fromLights.film && setup.input.camera.seesBack();
+    if (ways.counts.paths > 0) setup.useWays(ways.counts, ways.map.squares.empty() ? nullptr : &ways.map);
+    const FromLights& asked = settings.fromLights;
+    stats.ways = ways.counts.paths > 0
+                     ? ways.counts
+                     : WayCounts{1, asked.paths, double(asked.connections), double(asked.laterConnections)};
+    if (ways.map.squares.empty()) stats.ways->atHit = double(setup.input.samplesPerHit) / settings.samplesPerHit;
+    stats.lightTracing = setup.input.light->toFilm;
   }
-  if (stats.ways && needsMoments(settings.allocation) && settings.allocation != Allocation::kAuto)
-    stats.leftOut.push_back("no allocation " + std::string(name(settings.allocation)) +
-                            ": it is of paths from the camera alone, and counts are equal");
   const uint32_t target = targetOf(settings), pilotSpp = pilotOf(settings, target);
   const bool wanted = needsMoments(settings.allocation) && (setup.needs & kNeedsAllocation) != 0 &&
                       (setup.needs & kNeedsConnections) == 0;
@@ -422,36 +424,33 @@ FilmBuffer renderWith(const BuiltScene& built, const RenderSettings& settings, S
   return buffer;
 }
 
-// Of a bidirectional render whose allocation is `auto`, with numbers that a pilot chose: where paths from the lights do
-// not pay, those of paths from the camera alone.
+// Of a bidirectional render whose allocation asks for a pilot: its numbers. Where `auto` says that paths from the
+// lights do not pay, the settings are those of paths from the camera alone.
 template <size_t K>
-RenderSettings withWays(const BuiltScene& built, const RenderSettings& settings, Statistics& stats,
-                        const RenderObserver& observer) {
-  RenderSettings chosen = settings;
-  if (!settings.bidirectional() || settings.allocation != Allocation::kAuto) return chosen;
+WayChoice waysOf(const BuiltScene& built, RenderSettings& settings, Statistics& stats, const RenderObserver& observer) {
+  if (!settings.bidirectional() || !needsMoments(settings.allocation)) return {};
   const Clocks start{wallSeconds(), cpuSeconds()};
   RenderSetup<K> setup(built, settings);
-  if ((setup.needs & kNeedsConnections) == 0) return chosen;
+  if ((setup.needs & kNeedsConnections) == 0) return {};
   setup.drawFrom({SamplerType::kIndependent, ~settings.seed, 1});
   const auto stopped = [&] { return observer.stop != nullptr && observer.stop->load() != Stop::kNo; };
-  const WayChoice choice = chooseWays<K>(setup, settings.open() ? kUsualSamples : countOf(settings), stopped);
-  if (choice.counts.paths > 0) {
-    chosen.samplesPerHit = setup.samplesAtHit(choice.counts);
-    chosen.fromLights.paths = choice.counts.paths, chosen.fromLights.connections = choice.counts.connections;
-    chosen.fromLights.laterConnections = choice.counts.laterConnections;
-  } else {
-    chosen.integrator = Integrator::kPath;
+  WayChoice choice = chooseWays<K>(setup, settings.allocation, double(settings.minFraction),
+                                   settings.open() ? kUsualSamples : countOf(settings), stopped);
+  if (!(choice.counts.paths > 0)) {
+    settings.integrator = Integrator::kPath;
     stats.leftOut.emplace_back("no paths from lights: a pilot says that paths from the camera alone are sooner");
   }
   const Clocks time = Clocks{wallSeconds(), cpuSeconds()} - start;
   stats.wayGain = choice.gain, stats.wayPilot = time, stats.pilotCounts = choice.pilot;
-  return chosen;
+  return choice;
 }
 
 FilmBuffer renderInArena(const BuiltScene& built, const RenderSettings& settings, Statistics& stats,
                          const RenderObserver& observer) {
   return withTechniques(built.lobes(), [&](auto k) {
-    return renderWith<k()>(built, withWays<k()>(built, settings, stats, observer), stats, observer);
+    RenderSettings chosen = settings;
+    const WayChoice ways = waysOf<k()>(built, chosen, stats, observer);
+    return renderWith<k()>(built, chosen, ways, stats, observer);
   });
 }
 

@@ -12,6 +12,7 @@
 #include "film/film.h"
 #include "integrate/counts.h"
 #include "integrate/settings.h"
+#include "mis/ways.h"
 #include "scene/scene.h"
 
 namespace wardmis {
@@ -44,10 +45,10 @@ struct Statistics {
   bool pilotKept = false;                   // its samples are part of the image
   std::vector<float> cost;                  // of a sample of each technique, that the allocation took into account
   float costOfHit = 0;                      // a share of a hit's own, in the same unit
-  double pixelGain = 1;            // of error x time, that unequal samples of pixels are to bring; 1: all have as many
-  double hiddenLights = 1;         // LightVisibility::learn(), where lights are drawn by it; 1: they are not
-  std::optional<FromLights> ways;  // none: there are no paths from the lights
-  int samplesAtHit = 0;            // beside them
+  double pixelGain = 1;           // of error x time, that unequal samples of pixels are to bring; 1: all have as many
+  double hiddenLights = 1;        // LightVisibility::learn(), where lights are drawn by it; 1: they are not
+  std::optional<WayCounts> ways;  // in mean over the pixels; none: there are no paths from the lights
+  bool lightTracing = false;      // they are traced to the film, too
   double wayGain = 1;  // of second moment x cost, that chosen numbers of ways have over paths from the camera alone
   Clocks wayPilot;     // what choosing them took
   std::optional<EstimatedError> error;  // the last estimate, where an error is aimed at

@@ -210,7 +210,7 @@ RenderSetup<K>::RenderSetup(const BuiltScene& built, const RenderSettings& s)
   light_->verticesPerPath = verticesPerPath<K>(input);
   light_->toFilm = s.fromLights.film && camera_.seesBack();
   samplesPerHit_ = s.samplesPerHit;
-  useWays({1, s.fromLights.paths, s.fromLights.connections, s.fromLights.laterConnections});
+  useWays({1, s.fromLights.paths, double(s.fromLights.connections), double(s.fromLights.laterConnections)}, nullptr);
 }
 
 template <size_t K>
@@ -229,24 +229,26 @@ int RenderSetup<K>::samplesAtHit(const WayCounts& counts) const {
 }
 
 template <size_t K>
-void RenderSetup<K>::useWays(const WayCounts& counts) {
-  input.samplesPerHit = samplesAtHit(counts);
-  light_->connections = counts.connections, light_->laterConnections = counts.laterConnections;
+void RenderSetup<K>::useWays(const WayCounts& counts, const WayMap* map) {
+  input.samplesPerHit = map != nullptr ? samplesPerHit_ : samplesAtHit(counts);
+  input.ways = map;
+  light_->connections = static_cast<int>(std::ceil(counts.connections));
+  light_->laterConnections = static_cast<int>(std::ceil(counts.laterConnections));
   setPaths(counts.paths, 1);
 }
 
 template <size_t K>
-void RenderSetup<K>::beginWayPilot(const WayCandidates& candidates, std::vector<WaySums>& sums, int side) {
-  useWays({1, 1, 1, 1});
+void RenderSetup<K>::beginWayPilot(WayTally& tally, int side) {
+  useWays({1, 1, 1, 1}, nullptr);
   setPaths(1, side);
   input.side = side, input.light = &*light_;
-  input.wayCandidates = &candidates, input.waySums = &sums;
+  input.wayPilot = &tally;
 }
 
 template <size_t K>
 void RenderSetup<K>::endWayPilot() {
   input.side = 1;
-  input.wayCandidates = nullptr, input.waySums = nullptr;
+  input.wayPilot = nullptr;
 }
 
 template <size_t K>

@@ -61,9 +61,9 @@ struct RenderSetup {
   // Paths from the lights, where the integrator wants them and the scene allows; with these none while `on` is false.
   void connectLights(bool on) { input.light = on && light_ ? &*light_ : nullptr; }
   // A pilot that chooses how many there are: of a film with larger pixels, one path for each of these.
-  void beginWayPilot(const WayCandidates& candidates, std::vector<WaySums>& sums, int side);
+  void beginWayPilot(WayTally& tally, int side);
   void endWayPilot();
-  void useWays(const WayCounts& counts);
+  void useWays(const WayCounts& counts, const WayMap* map);  // map: of the pixels, or null
   int samplesAtHit(const WayCounts& counts) const;
   // Those of a camera sample, unless they are there.
   void traceLightOf(uint32_t sample, const std::function<Counts&()>& counts);

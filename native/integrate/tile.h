@@ -125,14 +125,22 @@ struct PixelSums {
   PilotPixel* pilot = nullptr;
   HitMoments<K>* moments = nullptr;
   CandidateSums<K>* candidates = nullptr;
-  WaySums* ways = nullptr;
 };
+
+// How paths from the lights are connected to those of a pixel's camera samples; empty where there are none.
+struct Unconnected {};
+struct Connected {
+  PixelWays counts;
+  size_t pixel = 0;  // of the film
+};
+template <uint32_t N>
+using MaybeConnected = std::conditional_t<(N & kNeedsConnections) != 0, Connected, Unconnected>;
 
 // Radiance along one camera ray of a world. catcher: null where it is not wanted.
 template <uint32_t N, size_t K>
 Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& camera, Vec2f lens, uint32_t pixelKey,
                  uint32_t sample, const PixelFractions<K>* allocated, WholeFractions<K>& whole, const PixelSums<K>& to,
-                 CatcherSample* catcher, Counts& counts) {
+                 const MaybeConnected<N>& connected, CatcherSample* catcher, Counts& counts) {
   Pixel& pixel = to.pixel;
   DataPixel* const data = to.data;
   LightPixel* light = to.light;
@@ -212,7 +220,7 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
     plan.samples = kSets * std::popcount(mask);
     plan.fractions = restrict<K>({}, mask);
   } else if constexpr ((N & kNeedsConnections) != 0) {
-    plan.samples = in.samplesPerHit;
+    plan.samples = in.light != nullptr ? connected.counts.samples : in.samplesPerHit;
     plan.fractions = firstFractions<K>(in, s, mask);
   } else {
     plan.samples = own != nullptr ? own->samples : in.samplesPerHit;
@@ -235,11 +243,13 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
     if (in.light != nullptr) {
       const LightPaths& lights = *in.light;
       const auto seen = in.camera.seen(x.position, lens, ray.path.time);
-      first.emplace(lights);
+      first.emplace(lights, connected.counts);
       first->left = in.limits.bounces, first->depth = in.limits.depth;
       first->before = first->throughput = seenThrough;
-      if (to.ways != nullptr) [[unlikely]]
-        first->notes = &notes.emplace(CameraVertex::Notes{*in.wayCandidates, *to.ways, scatter.emplace().data()});
+      if (in.wayPilot != nullptr) [[unlikely]] {
+        WayScatter* const scattered = in.wayPilot->moments.empty() ? scatter.emplace().data() : nullptr;
+        first->notes = &notes.emplace(CameraVertex::Notes{*in.wayPilot, connected.pixel, scattered});
+      }
       if (seen) first->end = {kAtFilm, lights.power(lights.perPixel()), {}, lights.power(double(seen->importance))};
       first->arrive(dot(x.geometric, x.wo), seen && detail::lightReaches(world, hit));
       plan.camera = &*first;
@@ -262,7 +272,7 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
     addLight(light->direct, split->direct, seenThrough * exposure);
   if constexpr (kConnects)
     for (size_t t = 0; scatter && t < K; ++t)
-      (*scatter)[t].addTo(*to.ways, static_cast<int>(counts.samples[t] - before[t]));
+      (*scatter)[t].addTo(in.wayPilot->pixels[connected.pixel].sums, static_cast<int>(counts.samples[t] - before[t]));
   if (to.taken != nullptr)
     for (size_t i = 0; i < K; ++i) to.taken[i] += static_cast<uint32_t>(counts.samples[i] - before[i]);
   if constexpr ((N & kNeedsBounces) != 0) {
@@ -280,7 +290,7 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
       [[maybe_unused]] MaybeVertex next = std::nullopt;
       if constexpr (kConnects)
         if (first) {
-          onward = &next.emplace(first->light);
+          onward = &next.emplace(first->light, first->ways);
           next->end = first->next[k], next->depth = first->depth;
           next->before = seenThrough, next->notes = first->notes;
         }
@@ -353,7 +363,10 @@ void renderTile(const KernelInput<K>& in, const Tile& tile, FilmBuffer& film, Pi
         if (!pilot->moments.empty()) sums.moments = &pilot->moments[index];
         if (!pilot->candidates.empty()) sums.candidates = &pilot->candidates[index];
       }
-      if (in.waySums != nullptr) sums.ways = &(*in.waySums)[index];
+      MaybeConnected<N> connected;
+      [[maybe_unused]] Counts::Join before{};
+      if constexpr ((N & kNeedsConnections) != 0)
+        if (in.light != nullptr) connected = {in.waysAt(x, y), index}, before = counts.join();
       const uint64_t raysBefore = film.rays.empty() ? 0 : counts.allRays();
       const uint32_t end = film.shares.count(index, tile.last);
       for (uint32_t s = film.shares.count(index, tile.first); s < end; ++s) {
@@ -376,7 +389,8 @@ void renderTile(const KernelInput<K>& in, const Tile& tile, FilmBuffer& film, Pi
           continue;
         }
         if (film.catchers.empty()) [[likely]] {
-          Rgb value = cameraSample<N, K>(in, in.scene, ray, lens, key, s, allocated, whole, sums, nullptr, counts);
+          Rgb value =
+              cameraSample<N, K>(in, in.scene, ray, lens, key, s, allocated, whole, sums, connected, nullptr, counts);
           if constexpr ((N & kNeedsConnections) != 0) value += lightToFilm<N, K>(in, index);
           value = value * exposure;
           if (counts.rare.admit(value, in.least)) pixel.add(value);
@@ -386,15 +400,23 @@ void renderTile(const KernelInput<K>& in, const Tile& tile, FilmBuffer& film, Pi
         Pixel again = pixel;
         CatcherSample seen;
         const Rgb value =
-            cameraSample<N, K>(in, in.scene, ray, lens, key, s, allocated, whole, sums, &seen, counts) * exposure;
+            cameraSample<N, K>(in, in.scene, ray, lens, key, s, allocated, whole, sums, connected, &seen, counts) *
+            exposure;
         if (!counts.rare.admit(value, in.least)) continue;
         pixel.add(value);
         addCatchers(film.catchers[index], value, exposure, pixel.alpha[0] - again.alpha[0], seen,
                     [&](CatcherSample& alone) {
                       return cameraSample<N, K>(in, *in.catchers, ray, lens, key, s, allocated, whole,
-                                                PixelSums<K>{again}, &alone, counts);
+                                                PixelSums<K>{again}, connected, &alone, counts);
                     });
       }
+      if constexpr ((N & kNeedsConnections) != 0)
+        if (in.wayPilot != nullptr) [[unlikely]] {
+          const Counts::Join after = counts.join();
+          WayTally::Pixel& noted = in.wayPilot->pixels[index];
+          noted.rays += static_cast<float>(after.rays - before.rays);
+          for (size_t i = 0; i < 2; ++i) noted.joined[i] += static_cast<float>(after.joined[i] - before.joined[i]);
+        }
       if (!film.rays.empty()) film.rays[index] += static_cast<uint32_t>(counts.allRays() - raysBefore);
     }
 }

@@ -38,6 +38,12 @@ struct Ways {
     for (size_t i = 0; i < kJoins; ++i) of[i] += b.of[i];
     return *this;
   }
+  // Of numbers that are larger by these.
+  Ways operator*(const std::array<double, kJoins>& factors) const {
+    Ways w = *this;
+    for (size_t i = 0; i < kJoins; ++i) w.of[i] *= factors[i];
+    return w;
+  }
   Ways operator*(double s) const {
     Ways w = *this;
     for (double& each : w.of) each *= s;

@@ -10,7 +10,9 @@
 #include <array>
 #include <vector>
 
+#include "math/square_map.h"
 #include "mis/path_end.h"
+#include "mis/rules.h"
 
 namespace wardmis {
 
@@ -18,14 +20,27 @@ namespace wardmis {
 struct WayCounts {
   double atHit = 1;  // of the camera's techniques at its first hit, over those that are asked for
   double paths = 0;  // from the lights, for each camera sample of a pixel; 0: none
-  int connections = 0, laterConnections = 0;  // of the first vertex of a camera's path, and of each other
+  double connections = 0, laterConnections = 0;  // of the first vertex of a camera's path, and of each other
 };
+
+// Those of a pixel.
+struct PixelWays {
+  int samples = 0;  // of the camera's techniques at its first hit
+  int connections = 0, laterConnections = 0;
+
+  // How much larger than with `asked` samples at a hit and one connection the densities of a group are.
+  std::array<double, kJoins> factors(int asked, WeightPower power) const {
+    const double atHit = double(samples) / asked;
+    return {power(atHit), power(connections), power(laterConnections * atHit), 1};
+  }
+};
+using WayMap = SquareMap<PixelWays>;
 
 // Those among which is chosen, paths from the camera alone first; and how much larger than with one path and one
 // connection the densities of a group are.
 class WayCandidates {
  public:
-  static constexpr size_t kCount = 40;  // at most
+  static constexpr size_t kCount = 48;  // at most
 
   WayCandidates();
   size_t size() const { return counts_.size(); }
@@ -63,6 +78,46 @@ struct WayScatter {
     const float even = sum * sum / (static_cast<float>(n) * squares);
     const float part = n > 1 ? std::max(0.0f, 1 - even) * static_cast<float>(n) / static_cast<float>(n - 1) : 1;
     for (size_t c = 0; c < sums.size(); ++c) to[c] += part * sums[c];
+  }
+};
+
+// Sums of estimates of the moments of a pixel's light under each group, from the samples of all, as Moments has them of
+// a hit's techniques. The parts are what the same groups find: a group is not better than another since it sees less.
+struct WayMoments {
+  static constexpr size_t kParts = size_t{1} << kJoins;  // masks of groups
+  struct Part {
+    std::array<float, kJoins> second{};  // m_j^2 = integral f^2/p_j
+    float square = 0, integral = 0;      // integral f^2/sum_k p_k, integral f
+  };
+  std::array<Part, kParts> part{};
+  std::array<float, kJoins> square{}, mean{};  // integrals of g^2 p_j and g p_j with g = f/sum_k p_k
+
+  // A sample of value v.
+  void add(float v, const Ways& ways);
+};
+
+// The shares of the groups by an allocation that moments suffice for: of pixels, with as many samples each, whose means
+// are given. available: mask of the groups that there may be.
+std::array<double, kJoins> wayShares(Allocation, const std::vector<WayMoments>& pixels,
+                                     const std::vector<double>& means, uint32_t samples, uint32_t available,
+                                     double least);
+
+// What a pilot notes.
+struct WayTally {
+  struct Pixel {
+    WaySums sums{};
+    float rays = 0;                 // of the camera's samples at its hits, and of paths that go on from there
+    std::array<float, 2> joined{};  // vertices that were joined: the first, and later ones
+  };
+  WayCandidates candidates;
+  std::vector<Pixel> pixels;
+  std::vector<WayMoments> moments;  // none where the candidates are asked
+
+  void note(size_t pixel, float v, const Ways& ways) {
+    if (moments.empty())
+      candidates.add(pixels[pixel].sums, v, ways);
+    else
+      moments[pixel].add(v, ways);
   }
 };
 

@@ -247,6 +247,38 @@ TEST(Bidirectional, AutomaticTakesLightPathsWhereTheyPay) {
   }
 }
 
+// Numbers by a pilot, of `auto` for each pixel, change what carries the light and not what is seen. |t| with 15 degrees
+// of freedom beyond 5.5 in one of 128 blocks comes once in 130 seeds.
+TEST(Bidirectional, PilotsShowTheSame) {
+  Scene scene = lampUnderCeiling(true);
+  scene.lights.push_back(pointLamp({0.8f, 0.8f, 0.4f}, 0.05f, 1));  // one that is seen
+  RenderSettings s = settings(Integrator::kBidirectional, 16);
+  const Blocks expected = blocks(scene, s, 16);
+  for (const Allocation rule : {Allocation::kAuto, Allocation::kVariance, Allocation::kSecondMoment}) {
+    s.allocation = rule;
+    Statistics statistics;
+    renderScene(scene, s, &statistics);
+    ASSERT_TRUE(statistics.ways.has_value());
+    if (rule == Allocation::kAuto) {  // not one number for all
+      const WayCounts& n = *statistics.ways;
+      double parts = 0;
+      for (const double each : {n.atHit * s.samplesPerHit, n.connections, n.laterConnections})
+        parts += std::abs(each - std::round(each));
+      EXPECT_GT(parts, 0.01);
+    }
+    for (const Weights weights : {Weights::kBalance, Weights::kPower}) {
+      s.weights = weights;
+      const Blocks got = blocks(scene, s, 16);
+      double worst = 0;
+      for (size_t i = 0; i < got.mean.size(); ++i)
+        if (expected.mean[i] > 0)
+          worst =
+              std::max(worst, std::abs(got.mean[i] - expected.mean[i]) / std::hypot(got.error[i], expected.error[i]));
+      EXPECT_LT(worst, 5.5) << name(rule) << ' ' << name(weights);
+    }
+  }
+}
+
 // Where nothing is to be had by them, the image is that of paths from the camera.
 TEST(Bidirectional, WithoutLightsThatSendPathsItIsThePath) {
   Scene scene = cases()[1].scene;

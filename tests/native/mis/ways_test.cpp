@@ -114,6 +114,52 @@ TEST(WayCandidates, PredictTheSecondMoment) {
   }
 }
 
+// Light that two groups find and some that one finds alone, in pixels of other brightness: shares by the paper's rules,
+// from moments that are known.
+TEST(WayMoments, ShareByTheRules) {
+  test::Random random(9);
+  constexpr uint32_t kSamples = 1 << 16;
+  std::vector<WayMoments> pixels(2);
+  const std::vector<double> means{1, 100};  // of one of which nothing but the scale is other
+  // f is 1 over [0, 1); the camera's density is 1, the film's 2 x, over one of each
+  for (uint32_t k = 0; k < kSamples; ++k)
+    for (const bool film : {false, true}) {
+      const double u = random.uniform(), x = film ? std::sqrt(u) : u;
+      Ways w = Ways::one(kByCamera, 1);
+      w += Ways::one(kAtFilm, 2 * x);
+      const auto v = static_cast<float>(1 / w.sum());
+      pixels[0].add(v, w), pixels[1].add(100 * v, w);
+    }
+  constexpr uint32_t kGroups = 1u << kByCamera | 1u << kAtFilm;
+  const auto integral = [](auto&& f) {
+    constexpr int kSteps = 1 << 16;
+    double sum = 0;
+    for (int i = 0; i < kSteps; ++i) sum += f((i + 0.5) / kSteps) / kSteps;
+    return sum;
+  };
+  const auto g = [](double x) { return 1 / (1 + 2 * x); };
+  const double camera = integral([&](double x) { return g(x) * g(x); }) -
+                        std::pow(integral([&](double x) { return g(x); }), 2),
+               film = integral([&](double x) { return g(x) * g(x) * 2 * x; }) -
+                      std::pow(integral([&](double x) { return g(x) * 2 * x; }), 2);
+  const auto byVariance = wayShares(Allocation::kVariance, pixels, means, kSamples, kGroups, 0);
+  EXPECT_NEAR(byVariance[kByCamera], camera / (camera + film), 0.01);
+  EXPECT_NEAR(byVariance[kByCamera] + byVariance[kAtFilm], 1, 1e-6);
+  // m^2 of the camera is 1, and of the film infinite
+  const auto bySecond = wayShares(Allocation::kSecondMoment, pixels, means, kSamples, kGroups, 0);
+  EXPECT_GT(bySecond[kByCamera], 0.75);
+  // what the film alone finds wants as much of it as its root says
+  for (WayMoments& m : pixels) m = {};
+  for (uint32_t k = 0; k < kSamples; ++k) {
+    pixels[0].add(3, Ways::one(kByCamera, 1)), pixels[0].add(1, Ways::one(kAtFilm, 1));
+    pixels[1].add(300, Ways::one(kByCamera, 1)), pixels[1].add(100, Ways::one(kAtFilm, 1));
+  }
+  const auto apart = wayShares(Allocation::kSecondMoment, pixels, means, kSamples, kGroups, 0);
+  EXPECT_NEAR(apart[kByCamera], 0.75, 1e-4);
+  const auto least = wayShares(Allocation::kSecondMoment, pixels, means, kSamples, kGroups, 0.3);
+  EXPECT_NEAR(least[kAtFilm], 0.3, 1e-4);
+}
+
 // Of a technique's equal samples nothing scatters; of one alone all may.
 TEST(WayScatter, CountsWhatScatters) {
   WayScatter even;
