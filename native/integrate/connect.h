@@ -135,37 +135,44 @@ Chosen chooseVertex(const CameraVertex& c, const X& x, uint32_t vertex, uint32_t
   return chosen;
 }
 
-// What one connection of x to a light's vertex brings, times the number of vertices. n: expected samples of the
-// techniques at x; u: random; ways: of what is not black, all by which it may come.
+// What a connection brings, times the number of vertices; of what is not black, all ways by which it may come and the
+// weight of this one.
+struct Connection {
+  Rgb value{0, 0, 0};
+  double weight = 0;
+  Ways ways{};
+};
+
+// One of x and a light's vertex. n: expected samples of the techniques at x; u: random.
 template <uint32_t N, size_t K, class Counts>
-Rgb connect(const RenderScene& world, const CameraVertex& c, const InteractionOf<SurfaceOf<N, K>>& x,
-            const Fractions<K>& n, int vertex, const LightVertex& v, Vec2f u, Ways& ways, Counts& counts) {
-  constexpr Rgb kNone{0, 0, 0};
-  if (vertex + 1 + v.length > c.depth || !world.emitters.reaches(v.emitter, vertex + v.length)) return kNone;
+Connection connect(const RenderScene& world, const CameraVertex& c, const InteractionOf<SurfaceOf<N, K>>& x,
+                   const Fractions<K>& n, int vertex, const LightVertex& v, Vec2f u, Counts& counts) {
+  const Connection none;
+  if (vertex + 1 + v.length > c.depth || !world.emitters.reaches(v.emitter, vertex + v.length)) return none;
   const Vec3f to = v.position - x.position;
   const float d2 = dot(to, to);
-  if (!(d2 > 0)) return kNone;
+  if (!(d2 > 0)) return none;
   const Vec3f d = to / std::sqrt(d2);
   Scattering<K> here;
   scatter<K>(x, d, here);
   const Rgb f = total(here.f);
-  if (!(maxComponent(f) > 0) || !(here.cosLight > 0)) return kNone;
+  if (!(maxComponent(f) > 0) || !(here.cosLight > 0)) return none;
   Ray ray = detail::reversed(-d, x.path.time, x.path.depth + 1);
   const SeenVertex<N, K> there(world, c.light, v, ray, vertex + v.length, LaterCounts<K>{world.emitters.any()},
                                kAtLater);
-  if (!(maxComponent(there.f) > 0)) return kNone;
+  if (!(maxComponent(there.f) > 0)) return none;
   if (c.light.countsBounces) {
     auto left = c.left;
     for (size_t k = 0; k < kBounceKinds; ++k) left[k] -= v.bounces[k];
     --left[detail::bounceOf<K>(x.surface, here, n, u.x)];
     if (v.length > 1) --left[detail::bounceOf<K>(there.x.surface, there.s, LaterCounts<K>{true}(there.x.surface), u.y)];
     for (const int l : left)
-      if (l < 0) return kNone;
+      if (l < 0) return none;
   }
   ray.origin = x.leave(d);
   const Vec3f way = there.x.leave(-d) - ray.origin;
   const float length2 = dot(way, way);
-  if (!(length2 > 0)) return kNone;
+  if (!(length2 > 0)) return none;
   const float length = std::sqrt(length2);
   ray.direction = way / length;
   ray.tMax = length * (1 - 1e-4f);  // where nothing rounds in the surface's position, the ray's end does
@@ -175,18 +182,18 @@ Rgb connect(const RenderScene& world, const CameraVertex& c, const InteractionOf
   const Rgb left = transmittance<N, K, false>(world, ray);
   if (isBlack(left) || ray.path.transparent > world.mostTransparent ||
       ray.path.transparent - v.passedFirst >= world.mostFollowed)
-    return kNone;
+    return none;
   const WeightPower& power = c.light.power;
   const Join join = joinAt(static_cast<uint32_t>(vertex));
   const double g = double(there.s.cosViewer) / double(d2), back = double(here.cosLight) / double(d2),
                own = power(c.perVertex(static_cast<uint32_t>(vertex)));
   const double reverse = double(there.s.light(there.x.surface));
-  ways = there.others * power(double(here.camera(n)) * g);
+  Ways ways = there.others * power(double(here.camera(n)) * g);
   ways.of[kAtLater] *= power(c.ways.laterConnections);
   ways += c.end.others(power(double(here.light(x.surface)))) * power(reverse * back);
   ways += Ways::one(join, own);
   const double weight = own / ways.sum();
-  return f * there.f * v.flux * left * static_cast<float>(weight * g / double(there.s.cosLight));
+  return {f * there.f * v.flux * left * static_cast<float>(weight * g / double(there.s.cosLight)), weight, ways};
 }
 
 }  // namespace wardmis

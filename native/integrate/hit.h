@@ -380,7 +380,8 @@ class HitEstimate {
     const CameraVertex& camera = *plan_.camera;
     Ways ways = shared ? s.others : Ways{};
     ways += Ways::one(kByCamera, 1 / double(mixture_.scale(s.technique, p, used)));
-    if (plan_.vertex > 0 || camera.notes->scatter == nullptr) return camera.note(value, ways);
+    if (plan_.vertex > 0 || camera.notes->scatter == nullptr)
+      return camera.note(value, ways, ways.of[kByCamera] / ways.sum(), plan_.vertex, 0);
     const float v = luminance(absolute(value * camera.throughput));
     WayScatter& scatter = camera.notes->scatter[s.technique];
     camera.notes->tally.candidates.add(scatter.sums, v, ways);
@@ -391,6 +392,14 @@ class HitEstimate {
     const CameraVertex& camera = *plan_.camera;
     const LightPaths& light = camera.light;
     const auto k = static_cast<uint32_t>(camera.connections(plan_.vertex));
+    const auto tried = [&](int byLight, int samples) {
+      if (camera.notes == nullptr || !camera.notes->tally.images) [[likely]]
+        return;
+      const int byCamera = static_cast<int>(plan_.vertex) + 1;
+      camera.notes->tally.images->tried(camera.notes->pixel, byCamera + byLight, byCamera,
+                                        static_cast<size_t>(samples));
+    };
+    tried(0, draws_.count);
     if (light.vertices.empty() || k == 0) return;
     const uint32_t dimension = kConnectionPoint + plan_.vertex * kConnectionsPerVertex;
     const float scale = 1 / (static_cast<float>(k) * static_cast<float>(light.kept));
@@ -400,13 +409,14 @@ class HitEstimate {
       const Chosen chosen = chooseVertex(camera, x_, plan_.vertex, combine(combine(plan_.pixelKey, dimension), index));
       if (!(chosen.weight > 0)) continue;
       const Vec2f bounce = light.countsBounces ? sampler_.get2D(plan_.pixelKey, dimension + 1, index) : Vec2f{};
-      Ways ways;
-      const Rgb value = connect<N, K>(world_, camera, x_, mixture_.n, static_cast<int>(plan_.vertex),
-                                      light.vertices[chosen.index], bounce, ways, counts_) *
-                        (scale * chosen.weight);
+      const LightVertex& v = light.vertices[chosen.index];
+      const Connection c =
+          connect<N, K>(world_, camera, x_, mixture_.n, static_cast<int>(plan_.vertex), v, bounce, counts_);
+      const Rgb value = c.value * (scale * chosen.weight);
       sum_ += value;
+      tried(v.length, 1);
       if (camera.notes != nullptr) [[unlikely]]
-        if (!isBlack(value)) camera.note(value, ways);
+        if (!isBlack(value)) camera.note(value, c.ways, c.weight, plan_.vertex, v.length);
     }
   }
 

@@ -37,7 +37,8 @@ struct KernelInput {
 
   // x, y: of the film.
   PixelWays waysAt(int x, int y) const {
-    return ways != nullptr ? ways->at(x, y) : PixelWays{samplesPerHit, light->connections, light->laterConnections};
+    return ways != nullptr ? ways->at(x * side, y * side)
+                           : PixelWays{samplesPerHit, light->connections, light->laterConnections};
   }
 };
 

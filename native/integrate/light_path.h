@@ -166,7 +166,7 @@ void splat(const KernelInput<K>& in, const LightVertex& v, Vec2f lens, std::vect
   Ways ways = at.others * light.power(camera);
   ways += Ways::one(kAtFilm, light.power(light.perPixel()));
   const Rgb value = at.f * v.flux * left * static_cast<float>(camera / (double(at.s.cosLight) * double(light.paths)));
-  splats.push_back({seen->px, seen->py, value, ways});
+  splats.push_back({seen->px, seen->py, value, v.length, ways});
 }
 
 // Adds a vertex to those that are connected.
@@ -229,7 +229,10 @@ void traceLightPath(const KernelInput<K>& in, uint32_t index, LightList& to, Cou
     left = {1, 1, 1};
     if (isBlack(v.flux)) return;
     if (light.connects()) keep<K>(light, v, x, cosLight, to);
-    if (light.toFilm) splat<N, K>(in, v, in.sampler.get2D(key, dimension + kLightLens, index), to.splats, counts);
+    if (light.toFilm) {
+      if (v.length < to.tried.size()) ++to.tried[v.length];
+      splat<N, K>(in, v, in.sampler.get2D(key, dimension + kLightLens, index), to.splats, counts);
+    }
     if (length == in.limits.depth) return;
 
     const auto next = detail::onward<K>(x, in.sampler, key, dimension, index);

@@ -45,6 +45,7 @@ struct LightSketch {
 struct Splat {
   float px, py;  // pixels of the full frame
   Rgb value;     // integrated over the film's area, in pixels, without a weight
+  int surfaces;  // of the path
   Ways ways;     // all by which it may come, with as many samples at a hit as are asked for and one connection
 };
 
@@ -53,7 +54,8 @@ struct LightList {
   std::vector<LightVertex> vertices;
   std::vector<LightSketch> sketches;  // of the vertices
   std::vector<Splat> splats;
-  void clear() { vertices.clear(), sketches.clear(), splats.clear(); }
+  std::array<uint32_t, WayImages::kMostSurfaces + 1> tried{};  // of vertices by their length, for the film
+  void clear() { vertices.clear(), sketches.clear(), splats.clear(), tried = {}; }
 };
 
 // Whose vertices are kept, of a camera sample of the image: what they take is bounded. Of those that are left out the
@@ -112,8 +114,8 @@ struct CameraVertex {
   const Notes* notes = nullptr;
   Rgb before{1, 1, 1}, throughput{1, 1, 1};  // of what is seen at the first hit, and here
 
-  void note(Rgb value, const Ways& all) const {
-    notes->tally.note(notes->pixel, luminance(absolute(value * throughput)), all);
+  void note(Rgb value, const Ways& all, double weight, uint32_t vertex, int byLight) const {
+    notes->tally.note(notes->pixel, value * throughput, all, weight, static_cast<int>(vertex) + 1, byLight);
   }
 
   // At a surface, whose face the ray meets at this cosine. reached: by paths from the lights.

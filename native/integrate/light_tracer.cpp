@@ -79,7 +79,7 @@ void addToFilm(const KernelInput<K>& in, const std::vector<LightList>& lists, st
             const auto weight = static_cast<float>(ways.of[kAtFilm] / ways.sum());
             const Rgb value = s.value * (weight * share / (side * side));
             film[pixel] += value;
-            if (in.wayPilot != nullptr) in.wayPilot->note(pixel, luminance(absolute(value)), ways);
+            if (in.wayPilot != nullptr) in.wayPilot->note(pixel, value, ways, double(weight), 0, s.surfaces);
           }
         }
       }
@@ -111,6 +111,10 @@ void traceLight(const KernelInput<K>& in, uint32_t sample, LightPaths& light, co
         light.sketches.insert(light.sketches.end(), list.sketches.begin(), list.sketches.end());
       }
     if (light.toFilm) addToFilm(in, lists, light.film);
+    if (in.wayPilot != nullptr && in.wayPilot->images)
+      for (const LightList& list : lists)
+        for (int k = 1; k <= WayImages::kMostSurfaces; ++k)
+          in.wayPilot->images->tried(0, k, 0, list.tried[static_cast<size_t>(k)]);
   }
 }
 

@@ -424,32 +424,21 @@ FilmBuffer renderWith(const BuiltScene& built, const RenderSettings& settings, c
   return buffer;
 }
 
-// Of a bidirectional render whose allocation asks for a pilot: its numbers. Where `auto` says that paths from the
-// lights do not pay, the settings are those of paths from the camera alone.
-template <size_t K>
-WayChoice waysOf(const BuiltScene& built, RenderSettings& settings, Statistics& stats, const RenderObserver& observer) {
-  if (!settings.bidirectional() || !needsMoments(settings.allocation)) return {};
-  const Clocks start{wallSeconds(), cpuSeconds()};
-  RenderSetup<K> setup(built, settings);
-  if ((setup.needs & kNeedsConnections) == 0) return {};
-  setup.drawFrom({SamplerType::kIndependent, ~settings.seed, 1});
-  const auto stopped = [&] { return observer.stop != nullptr && observer.stop->load() != Stop::kNo; };
-  WayChoice choice = chooseWays<K>(setup, settings.allocation, double(settings.minFraction),
-                                   settings.open() ? kUsualSamples : countOf(settings), stopped);
-  if (!(choice.counts.paths > 0)) {
-    settings.integrator = Integrator::kPath;
-    stats.leftOut.emplace_back("no paths from lights: a pilot says that paths from the camera alone are sooner");
-  }
-  const Clocks time = Clocks{wallSeconds(), cpuSeconds()} - start;
-  stats.wayGain = choice.gain, stats.wayPilot = time, stats.pilotCounts = choice.pilot;
-  return choice;
-}
-
 FilmBuffer renderInArena(const BuiltScene& built, const RenderSettings& settings, Statistics& stats,
                          const RenderObserver& observer) {
   return withTechniques(built.lobes(), [&](auto k) {
     RenderSettings chosen = settings;
-    const WayChoice ways = waysOf<k()>(built, chosen, stats, observer);
+    const Clocks start{wallSeconds(), cpuSeconds()};
+    const auto stopped = [&] { return observer.stop != nullptr && observer.stop->load() != Stop::kNo; };
+    const WayChoice ways = waysOf<k()>(built, settings, settings.open() ? kUsualSamples : countOf(settings), stopped);
+    if (ways.asked) {
+      if (!(ways.counts.paths > 0)) {
+        chosen.integrator = Integrator::kPath;
+        stats.leftOut.emplace_back("no paths from lights: a pilot says that paths from the camera alone are sooner");
+      }
+      stats.wayGain = ways.gain, stats.wayPilot = Clocks{wallSeconds(), cpuSeconds()} - start;
+      stats.pilotCounts = ways.pilot;
+    }
     return renderWith<k()>(built, chosen, ways, stats, observer);
   });
 }

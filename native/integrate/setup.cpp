@@ -238,15 +238,15 @@ void RenderSetup<K>::useWays(const WayCounts& counts, const WayMap* map) {
 }
 
 template <size_t K>
-void RenderSetup<K>::beginWayPilot(WayTally& tally, int side) {
-  useWays({1, 1, 1, 1}, nullptr);
-  setPaths(1, side);
+void RenderSetup<K>::beginWayNotes(WayTally& tally, int side, const WayCounts& counts, const WayMap* map) {
+  useWays(counts, map);
+  setPaths(counts.paths, side);
   input.side = side, input.light = &*light_;
   input.wayPilot = &tally;
 }
 
 template <size_t K>
-void RenderSetup<K>::endWayPilot() {
+void RenderSetup<K>::endWayNotes() {
   input.side = 1;
   input.wayPilot = nullptr;
 }

@@ -60,9 +60,9 @@ struct RenderSetup {
   // Light samples tell `learning` whether they are seen, and are drawn by what `lights` knows of that; null: neither.
   // Paths from the lights, where the integrator wants them and the scene allows; with these none while `on` is false.
   void connectLights(bool on) { input.light = on && light_ ? &*light_ : nullptr; }
-  // A pilot that chooses how many there are: of a film with larger pixels, one path for each of these.
-  void beginWayPilot(WayTally& tally, int side);
-  void endWayPilot();
+  // Notes of a film with pixels of `side` of the image's, with these numbers for each of them.
+  void beginWayNotes(WayTally& tally, int side, const WayCounts& counts, const WayMap* map);
+  void endWayNotes();
   void useWays(const WayCounts& counts, const WayMap* map);  // map: of the pixels, or null
   int samplesAtHit(const WayCounts& counts) const;
   // Those of a camera sample, unless they are there.

@@ -247,7 +247,7 @@ Rgb cameraSample(const KernelInput<K>& in, const RenderScene& world, const Ray& 
       first->left = in.limits.bounces, first->depth = in.limits.depth;
       first->before = first->throughput = seenThrough;
       if (in.wayPilot != nullptr) [[unlikely]] {
-        WayScatter* const scattered = in.wayPilot->moments.empty() ? scatter.emplace().data() : nullptr;
+        WayScatter* const scattered = in.wayPilot->asksCandidates() ? scatter.emplace().data() : nullptr;
         first->notes = &notes.emplace(CameraVertex::Notes{*in.wayPilot, connected.pixel, scattered});
       }
       if (seen) first->end = {kAtFilm, lights.power(lights.perPixel()), {}, lights.power(double(seen->importance))};

@@ -17,9 +17,6 @@ constexpr int kSide = 4;                    // of a pilot's pixel, in pixels of 
 constexpr double kShare = 0.01;             // of the image's camera samples that it takes
 constexpr uint32_t kLeast = 4, kMost = 64;  // samples of its own pixels
 
-// What things cost, in rays that camera paths follow: as times in blend/ajar.blend have it.
-constexpr double kJoined = 1.2;    // a connection: two surfaces are asked, and often a ray
-constexpr double kLightRay = 2.2;  // of a path from a light: the surface is asked from both sides
 // Paths from the camera alone have more to share: techniques, lights that are hidden, pixels. What that gains in the
 // mean over the scenes of docs/performance.md.
 constexpr double kAlone = 1.6;
@@ -33,7 +30,7 @@ class Tallied {
   Tallied(const WayTally& tally, const FilmBuffer& film, const Counts& counts)
       : candidates_(tally.candidates), width_(film.width), height_(film.height) {
     const auto n = tally.pixels.size();
-    fixed_ = double(counts.cameraRays), light_ = kLightRay * double(counts.lightRays);
+    fixed_ = double(counts.cameraRays), light_ = kLightRayCost * double(counts.lightRays);
     std::vector<Pixel> own(n);
     for (size_t i = 0; i < n; ++i) {
       const WayTally::Pixel& p = tally.pixels[i];
@@ -91,7 +88,7 @@ class Tallied {
   double cost(const Pixel& p, size_t c) const {
     const WayCounts& w = candidates_.at(c);
     const double joins =
-        w.paths > 0 ? kJoined * (w.connections * p.joined[0] + w.laterConnections * w.atHit * p.joined[1]) : 0;
+        w.paths > 0 ? kConnectionCost * (w.connections * p.joined[0] + w.laterConnections * w.atHit * p.joined[1]) : 0;
     return w.atHit * p.rays + joins;
   }
   template <class Of>
@@ -196,8 +193,6 @@ void share(const WayTally& tally, const FilmBuffer& film, const RenderSetup<K>& 
                    std::round(shares[kAtFirst] * each), std::round(shares[kAtLater] * each)};
 }
 
-}  // namespace
-
 template <size_t K>
 WayChoice chooseWays(RenderSetup<K>& setup, Allocation rule, double minimum, uint32_t expected,
                      const std::function<bool()>& stopped) {
@@ -207,7 +202,7 @@ WayChoice chooseWays(RenderSetup<K>& setup, Allocation rule, double minimum, uin
   WayTally tally;
   tally.pixels.resize(film.pixels.size());
   if (rule != Allocation::kAuto) tally.moments.resize(film.pixels.size());
-  setup.beginWayPilot(tally, kSide);
+  setup.beginWayNotes(tally, kSide, {1, 1, 1, 1}, nullptr);
   tbb::enumerable_thread_specific<Counts> counts;
   const auto own = [&]() -> Counts& { return counts.local(); };
   std::atomic<int> tiles{0};
@@ -216,7 +211,7 @@ WayChoice chooseWays(RenderSetup<K>& setup, Allocation rule, double minimum, uin
     renderTiles<K>(setup, film, 1, nullptr, own, tiles, stopped);
     ++film.samples;
   }
-  setup.endWayPilot();
+  setup.endWayNotes();
   WayChoice choice;
   for (const Counts& c : counts) choice.pilot += c;
   if (stopped()) return choice;
@@ -227,8 +222,22 @@ WayChoice chooseWays(RenderSetup<K>& setup, Allocation rule, double minimum, uin
   return choice;
 }
 
+}  // namespace
+
+template <size_t K>
+WayChoice waysOf(const BuiltScene& built, const RenderSettings& settings, uint32_t expected,
+                 const std::function<bool()>& stopped) {
+  if (!settings.bidirectional() || !needsMoments(settings.allocation)) return {};
+  RenderSetup<K> setup(built, settings);
+  if ((setup.needs & kNeedsConnections) == 0) return {};
+  setup.drawFrom({SamplerType::kIndependent, ~settings.seed, 1});
+  WayChoice choice = chooseWays<K>(setup, settings.allocation, double(settings.minFraction), expected, stopped);
+  choice.asked = true;
+  return choice;
+}
+
 #define WARDMIS_INSTANTIATE(K) \
-  template WayChoice chooseWays<K>(RenderSetup<K>&, Allocation, double minimum, uint32_t, const std::function<bool()>&);
+  template WayChoice waysOf<K>(const BuiltScene&, const RenderSettings&, uint32_t, const std::function<bool()>&);
 WARDMIS_TECHNIQUE_COUNTS(WARDMIS_INSTANTIATE)
 
 }  // namespace wardmis

@@ -7,17 +7,22 @@
 
 namespace wardmis {
 
+// What things cost, in rays that camera paths follow: as times in blend/ajar.blend have it.
+inline constexpr double kConnectionCost = 1.2;  // two surfaces are asked, and often a ray
+inline constexpr double kLightRayCost = 2.2;    // of a path from a light: the surface is asked from both sides
+
 struct WayChoice {
-  WayCounts counts;  // in mean over the pixels, of camera samples at a hit a share of those that are asked for
-  WayMap map;        // of each pixel; empty where all have the same
-  double gain = 1;   // of second moment x cost, over paths from the camera alone; of `auto`
-  Counts pilot;      // what it took
+  bool asked = false;  // a pilot ran
+  WayCounts counts;    // in mean over the pixels, of camera samples at a hit a share of those that are asked for
+  WayMap map;          // of each pixel; empty where all have the same
+  double gain = 1;     // of second moment x cost, over paths from the camera alone; of `auto`
+  Counts pilot;        // what it took
 };
 
-// Of a setup with paths from the lights, by an allocation that asks for moments. expected: samples of the image;
-// minimum: share of a group, of other allocations than `auto`.
+// By an allocation that asks for moments, where the integrator and the scene want paths from the lights; without any
+// where `auto` says that they do not pay. expected: samples of the image.
 template <size_t K>
-WayChoice chooseWays(RenderSetup<K>& setup, Allocation rule, double minimum, uint32_t expected,
-                     const std::function<bool()>& stopped);
+WayChoice waysOf(const BuiltScene& built, const RenderSettings& settings, uint32_t expected,
+                 const std::function<bool()>& stopped);
 
 }  // namespace wardmis

@@ -8,11 +8,13 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "math/square_map.h"
 #include "mis/path_end.h"
 #include "mis/rules.h"
+#include "mis/way_images.h"
 
 namespace wardmis {
 
@@ -111,13 +113,19 @@ struct WayTally {
   };
   WayCandidates candidates;
   std::vector<Pixel> pixels;
-  std::vector<WayMoments> moments;  // none where the candidates are asked
+  std::vector<WayMoments> moments;  // where shares are wanted,
+  std::optional<WayImages> images;  // or what each way brings; else the candidates are asked
 
-  void note(size_t pixel, float v, const Ways& ways) {
-    if (moments.empty())
-      candidates.add(pixels[pixel].sums, v, ways);
-    else
+  bool asksCandidates() const { return moments.empty() && !images; }
+  // A sample's value, with its weight; byLight: surfaces that a path from a light made.
+  void note(size_t pixel, Rgb value, const Ways& ways, double weight, int byCamera, int byLight) {
+    const float v = luminance(absolute(value));
+    if (images)
+      images->add(pixel, byCamera + byLight, byCamera, value, weight);
+    else if (!moments.empty())
       moments[pixel].add(v, ways);
+    else
+      candidates.add(pixels[pixel].sums, v, ways);
   }
 };
 
