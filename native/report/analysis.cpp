@@ -13,6 +13,7 @@
 #include "report/provenance.h"
 #include "report/resample.h"
 #include "report/verdict.h"
+#include "report/way_pictures.h"
 
 namespace wardmis {
 namespace {
@@ -629,6 +630,11 @@ class Reporter {
     return all;
   }
 
+  json waysOf(const Measured& m) const {
+    const auto k = static_cast<size_t>(m.configuration - e_.configurations.data());
+    return k < e_.ways.size() ? waysJson(e_.ways[k], m.configuration->settings.samplesPerHit) : json();
+  }
+
   json configuration(const Measured& m) const {
     const Configuration& c = *m.configuration;
     RareCounts dropped;
@@ -681,6 +687,7 @@ class Reporter {
             {"cost", costOf(m)},
             {"prediction", prediction(m)},
             {"allocation", allocationOf(m)},
+            {"ways", waysOf(m)},
             {"counts",
              c.external ? json()
                         : json{{"nan", dropped.nan}, {"infinite", dropped.infinite}, {"negative", dropped.negative}}},

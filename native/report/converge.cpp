@@ -40,6 +40,8 @@ constexpr size_t kFewestOfBudget = 4;            // seeds, of which it must; it 
 constexpr double kUsedShare = 0.95;              // of a budget; the rest is for the report
 constexpr double kMargin = 1.25;                 // of a time that is said to be enough: speeds vary
 constexpr uint32_t kSurveySamples = 16;
+constexpr uint32_t kWaySamples = 64;  // of what each way to make a path brings,
+constexpr int kWayPixels = 96;        // in images of so many pixels across
 constexpr const char* kLayer = "ViewLayer";
 
 void requireFile(const fs::path& path) {
@@ -142,6 +144,12 @@ class Study {
       e.survey = survey(built_, s, kSurveySamples);
       s.spp = std::max(s.spp, 150u);  // three rounds of measuring
       withThreads(s.threads, [&] { e.sampleCost = measureCost(built_, s).sample; });
+    }
+    for (const Configuration& c : e.configurations) {
+      if (stopped()) break;
+      RenderSettings own = c.settings;
+      own.threads = plan_.threads, own.seed = kReferenceSeed - 1, own.spp = maxSpp_;
+      e.ways.push_back(surveyWays(built_, own, kWaySamples, kWayPixels, [&] { return stopped(); }));
     }
     e.runs.resize(e.configurations.size());
     if (!stopped()) runs();
@@ -299,7 +307,12 @@ class Study {
   // The settings of one configuration for each kind of light that is estimated.
   std::map<std::string, RenderSettings> referenceTargets() const {
     std::map<std::string, RenderSettings> targets;
-    for (const Configuration& c : experiment_.configurations) targets.emplace(estimates(c.settings), c.settings);
+    for (const Configuration& c : experiment_.configurations) {
+      const auto [found, isNew] = targets.emplace(estimates(c.settings), c.settings);
+      // of those that estimate the same, one with paths from the lights: where they are wanted, the camera's alone
+      // would leave the reference the noise that is measured
+      if (!isNew && c.settings.bidirectional() && !found->second.bidirectional()) found->second = c.settings;
+    }
     return targets;
   }
 

@@ -9,6 +9,7 @@
 
 #include "film/exr.h"
 #include "integrate/survey.h"
+#include "integrate/way_survey.h"
 #include "report/image.h"
 #include "report/metrics.h"
 
@@ -77,6 +78,7 @@ struct Experiment {
   std::vector<Reference> references;
   std::vector<std::vector<Run>> runs;  // of each configuration, by seed
   Survey survey;
+  std::vector<WaySurvey> ways;  // of each configuration of ours
   std::optional<double> target;
   bool complete = false;
   std::array<double, kMaxTechniques> sampleCost{};  // CPU seconds of one sample of each technique

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/way_pictures.h"
+
 namespace wardmis {
 
 using nlohmann::json;
@@ -70,6 +72,8 @@ std::vector<Picture> gallery(const Experiment& e, const std::vector<Measured>& m
                          "Shares of the samples at first hits: red the lobes, green the cosine, blue the light."},
                         shares, w, h));
   }
+  for (size_t k = 0; k < e.ways.size(); ++k)
+    for (Picture& p : wayPictures(e.configurations[k].name, e.ways[k])) all.push_back(std::move(p));
   for (size_t k = 0; k < measured.size(); ++k) {
     const Measured& m = measured[k];
     if (m.wins.empty()) continue;

@@ -17,7 +17,7 @@ struct Picture {
 
 inline constexpr int kLargestPicture = 960;  // pixels across; larger images are embedded as means of n x n pixels
 
-// What every kind has in common. `label` for people, `group`: image, error, allocation or map.
+// What every kind has in common. `label` for people, `group`: image, error, allocation, ways or map.
 struct PictureInfo {
   std::string key, label, group, configuration, text;
 };

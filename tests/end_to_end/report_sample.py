@@ -26,6 +26,7 @@ BEHAVIOUR = {
     "auto": (0.076, 0.0215, 0.12, 1.5e-4, -1.0),
     "Cycles": (0.125, 0.031, 0.0, 0.0, -0.86),
 }
+WAY_WIDTH, WAY_HEIGHT = 48, 32
 MAP_REMARK = "variance reaches the target later than equal, although it is better on more of the map."
 OBLIGATORY = (
     "schema",
@@ -117,6 +118,15 @@ def images():
         listed.append(
             ({"key": f"{name}-allocation", "label": f"{name}: allocation", "group": "allocation", "configuration": name,
               "kind": "rgb", "text": "Shares of the samples: red lobe, green cosine, blue light."}, png(shares))
+        )  # fmt: skip
+    pyramid = np.zeros((HEIGHT, WIDTH, 3))
+    for way in ways():
+        row, column = way["surfaces"] - 1, way["surfaces"] - way["by_camera"]
+        pyramid[row * WAY_HEIGHT :, column * WAY_WIDTH :][:WAY_HEIGHT, :WAY_WIDTH] = 0.5
+    for kind in ("ways", "ways alone"):
+        listed.append(
+            ({"key": f"auto/{kind}", "label": f"auto, {kind}", "group": "ways", "configuration": "auto", "kind": "radiance",
+              "text": "What each way to make a path brings."}, pack_radiance(pyramid))
         )  # fmt: skip
     for name in NAMES[1:4]:
         index = np.where((x + y) % 0.7 < 0.2, 0, np.where((x - y) % 0.9 < 0.05, 1, 2))
@@ -213,6 +223,8 @@ def configuration(name):
         "prediction": None if other else {"edges": edges.tolist(), "counts": counts.tolist(), "median": 1.01, "pooled": interval(1.01),
                                           "text": "The estimates are right in the median." if first else ""},
         "allocation": None if other else {"lobe": 0.5, "cosine": 0.2, "light": 0.3, "clamped": 0.0 if first else 0.021, "starved": 0.0},
+        "ways": {"samples_at_hit": 3.7, "light_paths": 1, "connections": 0.16, "later_connections": 0.07, "samples": 64,
+                 "width": WAY_WIDTH, "height": WAY_HEIGHT, "list": ways()} if name == "auto" else None,
         "counts": None if other else {"nan": 0, "infinite": 0, "negative": 3 if name == "auto" else 0},
         "wins": None if first or other else {"better": 0.31, "worse": 0.02, "undecided": 0.67, "text": MAP_REMARK if name == "variance" else ""},
         "groups": [] if other else [
@@ -220,6 +232,15 @@ def configuration(name):
              "ratio": None if first else interval(start / 0.13 * 2.0 ** ((k - 1.2) * 0.5), 0.1)}
             for kind, parts in groups for k, part in enumerate(parts)],
     }  # fmt: skip
+
+
+def ways():
+    """Of paths with up to three surfaces, all that a camera and a light can share them by."""
+    return [
+        {"surfaces": n, "by_camera": k, "samples": 1, "variance": 1 / 9, "cost": 0.0 if k == 0 else 1 / 6}
+        for n in range(1, 4)
+        for k in range(n + 1)
+    ]
 
 
 def metric(name, label, formula, epsilon=None, subtracted=False):

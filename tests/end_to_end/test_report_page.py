@@ -34,6 +34,7 @@ SECTIONS = [
     "cost",
     "prediction",
     "allocation",
+    "ways",
     "models",
     "method",
 ]
@@ -433,6 +434,19 @@ class Page(unittest.TestCase):
         self.assertTrue(self.run_js("return document.querySelector('.viewer input[type=range]').disabled"))
         self.show("allocation")
         self.assertRegex(self.point_at(0.5, 0.5), r"lobes [\d.]+ % +cosine 14\.9 % +light")
+
+    def test_ways_are_a_pyramid(self):
+        self.open()
+        rows = self.run_js(
+            """return [...document.querySelectorAll('.ways > div')].map(row => [...row.querySelectorAll('figcaption')].map(c => c.innerText))"""
+        )
+        self.assertEqual([len(row) for row in rows], [2, 3, 4])
+        self.assertEqual([c.split("\n")[0] for c in rows[2]], ["camera alone", "2 + 1", "1 + 2", "to the film"])
+        self.assertIn("11 %", rows[0][0])
+        colours = self.run_js(
+            """return [...document.querySelectorAll('.ways canvas')].map(c => c.getContext('2d').getImageData(24, 16, 1, 1).data[0])"""
+        )
+        self.assertEqual(set(colours), {188})  # sRGB of .5
 
     def test_everything_is_one_list(self):
         self.open()

@@ -602,7 +602,7 @@
     return where + names.map((name, c) => `${name} ${percent(png.at(x, y, c) / 255)}`).join("   ");
   }
 
-  const GROUPS = [["image", "images"], ["error", "errors"], ["allocation", "allocation"], ["map", "maps"]];
+  const GROUPS = [["image", "images"], ["error", "errors"], ["allocation", "allocation"], ["ways", "ways"], ["map", "maps"]];
 
   function viewerSection() {
     if (!filled(report.images)) return null;
@@ -1025,7 +1025,44 @@
     return section("allocation", "Allocation and counts", allocation, counts);
   }
 
-  // ---- 11. Models ----------------------------------------------------------------------------------------------------
+  // ---- 11. Ways ------------------------------------------------------------------------------------------------------
+
+  // The pyramid of what each way to make a path brings: a row for each length, as the pictures of the group "ways" have it.
+  function waysSection() {
+    const of = configurations.filter((c) => c.ways);
+    if (!of.length) return null;
+    const small = (x) => (x >= 0.005 ? `${Math.round(100 * x)} %` : x > 0 ? "< 1 %" : "0 %");
+    const surfaces = (n) => (n === 1 ? "1 surface" : `${n} surfaces`);
+    return section("ways", "Ways to make a path",
+      read("A path may be made by the camera up to where a light is found, by a light up to the lens, or by both, connected. Of each way: the small image of what it brings with its weight, its share of the variance and its share of the cost, in rays. The rows are paths of one surface, of two, and so on; in each column a light makes one more of them. Without the weights the images are in the viewer, as “ways alone”."),
+      of.map((c) => {
+        const { ways } = c, rows = Math.max(...ways.list.map((way) => way.surfaces));
+        const index = (report.images || []).findIndex((image) => image.group === "ways" && image.configuration === c.name);
+        const cells = [];
+        const cell = (way) => {
+          const light = way.surfaces - way.by_camera;
+          const canvas = h("canvas", { width: ways.width, height: ways.height, role: "img", "aria-label": `${way.by_camera} by the camera, ${light} by a light` });
+          cells.push({ canvas, way });
+          return h("figure", {}, canvas, h("figcaption", {}, light === 0 ? "camera alone" : way.by_camera === 0 ? "to the film" : `${way.by_camera} + ${light}`, h("br"), `${small(way.variance)} · ${small(way.cost)}`));
+        };
+        if (index >= 0)
+          started.push(async () => {
+            const image = report.images[index];
+            const png = await decodePng(document.getElementById(`image-${index}`).textContent);
+            const all = develop(image, png, 0);
+            for (const { canvas, way } of cells)
+              canvas.getContext("2d").putImageData(all, -(way.surfaces - way.by_camera) * ways.width, -(way.surfaces - 1) * ways.height);
+          });
+        return [
+          h("h3", {}, named(c)),
+          h("p", {}, `Samples at a first hit ${brief(ways.samples_at_hit)}, connections of it ${brief(ways.connections)} and of each later vertex ${brief(ways.later_connections)}, in mean over the pixels; paths from the lights for each camera sample ${brief(ways.light_paths)}.`),
+          h("div", { class: "ways", role: "list", "aria-label": `ways of ${c.name}: share of the variance, share of the cost` }, Array.from({ length: rows }, (_, n) =>
+            h("div", { role: "listitem" }, h("span", {}, surfaces(n + 1)), ways.list.filter((way) => way.surfaces === n + 1).sort((a, b) => b.by_camera - a.by_camera).map(cell)))),
+        ];
+      }));
+  }
+
+  // ---- 12. Models ----------------------------------------------------------------------------------------------------
 
   function modelsSection() {
     if (!filled(report.models)) return null;
@@ -1039,7 +1076,7 @@
       report.models.filter((m) => m.text).map((m) => h("p", {}, m.text.startsWith(m.name) ? m.text : `${m.name}: ${m.text}`)));
   }
 
-  // ---- 12. Method ----------------------------------------------------------------------------------------------------
+  // ---- 13. Method ----------------------------------------------------------------------------------------------------
 
   function runsOf(list) {
     const ordered = [...list].sort((a, b) => a - b), parts = [];
@@ -1091,7 +1128,7 @@
 
   root.dataset.theme = preference.matches ? "dark" : "light";
   document.title = report.title;
-  const sections = [errorSection, targetSection, equalSection, viewerSection, biasSection, whereSection, costSection, predictionSection, allocationSection, modelsSection, methodSection]
+  const sections = [errorSection, targetSection, equalSection, viewerSection, biasSection, whereSection, costSection, predictionSection, allocationSection, waysSection, modelsSection, methodSection]
     .map((make) => make()).filter(known);
   const contents = h("nav", { "aria-label": "contents" }, sections.map((s) => h("a", { href: `#${s.id}` }, s.querySelector("h2").firstChild.textContent)));
   const footer = h("footer", {}, "The same numbers are in report.json and in the .csv files beside this page. It works without a network; figures are drawn by plotly.js (MIT licence).");
