@@ -30,10 +30,13 @@ from parts import (  # noqa: E402
 def main(folder, names):
     for name in names:
         kind, _, number = name.rpartition("-")
-        if kind in NUMBERED:
+        if kind in NUMBERED and number.isdigit():
             NUMBERED[kind](int(number))
         elif name in SCENES:
             SCENES[name]()
+        elif kind and number == "guided":
+            (SCENES[kind] if kind in SCENES else lambda: opened(kind))()
+            bpy.context.scene.cycles.use_guiding = True
         else:
             opened(name)
         bpy.ops.wm.save_as_mainfile(filepath=str(Path(folder) / f"{name}.blend"), compress=True)

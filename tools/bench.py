@@ -108,16 +108,19 @@ def row(scene: str, report: dict[str, Any]) -> Row:
     )
 
 
-def measured(scene: str, folder: Path, options: argparse.Namespace) -> Row:
+def compared(scene: str, options: argparse.Namespace, configurations: Sequence[str]) -> dict[str, Any]:
+    """The report of ./dev compare on a scene of blend/bench_scenes.py."""
     print(f"bench: {scene}", file=sys.stderr, flush=True)
+    folder = options.out
     blender.run("--python-exit-code", "1", "--python", ROOT / "blend" / "bench_scenes.py", "--", folder, scene)
     out = folder / scene
     shutil.rmtree(out, ignore_errors=True)  # an earlier one would be gone on with, not measured
-    words = [*(w for c in CONFIGURATIONS for w in ("-c", c)), "--seeds", options.seeds, "--cycles-seeds", options.seeds]
+    words = [*(w for c in configurations for w in ("-c", c)), "--seeds", options.seeds, "--cycles-seeds", options.seeds]
     words += ["--max-spp", options.samples, "--resolution", options.resolution]
     script = ROOT / "blend" / "compare.py"
     blender.run(folder / f"{scene}.blend", "--python-exit-code", "1", "--python", script, "--", "-o", out, *words)
-    return row(scene, json.loads((out / "report.json").read_text()))
+    report: dict[str, Any] = json.loads((out / "report.json").read_text())
+    return report
 
 
 def converged(scene: str, study: Path, options: argparse.Namespace, *words: str | Path | int) -> dict[str, Any]:
@@ -166,7 +169,7 @@ def main() -> int:
     rows: list[Row] = []
     for scene in options.scenes:
         try:
-            rows.append(measured(scene, options.out, options))
+            rows.append(row(scene, compared(scene, options, CONFIGURATIONS)))
         except blender.RenderFailed as error:
             sys.exit(f"bench: {error}")
         (options.out / "bench.json").write_text(json.dumps([asdict(r) for r in rows], indent=1) + "\n")

@@ -19,6 +19,7 @@ from markdown import table
 
 SHORT, LONG, ROUNDS = 4, 20, 5  # samples per pixel; pairs
 LIMITED = ("veach", "teapot", "teapot-direct", "triangles-1000000")
+CONNECTED = "ajar"  # of paths from both ends
 GROWING = {
     "lamps": (1, 9, 100, 1024, 10000),
     "glowing": (2, 200, 20000, 1000000),
@@ -105,6 +106,7 @@ def main() -> int:
             continue
         integrator = ("--integrator", "direct" if name.endswith("direct") else "path")
         limits.append(bench.path(name.removesuffix("-direct"), *integrator, limit=True))
+    limits.append(bench.path(CONNECTED, "--integrator", "bidirectional", limit=True))
     kernels = [bench.path("teapot", "--integrator", "direct", "--kernel", kernel) for kernel in ("auto", "general")]
     memory = {rule: bench.bytes_per_pixel("veach", "--allocation", rule) for rule in ("equal", "second-moment", "auto")}
     growing = {

@@ -26,6 +26,13 @@ class Scene:
 
 SCENES = {"teapot": Scene(), "veach": Scene(1024), "studio": Scene(256, is_cycles_own=True)}
 ALLOCATIONS = ("equal", "auto", "variance", "second-moment")
+PAPERS = ("equal", "variance", "second-moment")  # Lopez Garces and Kong's, in the integrator and of the points they had
+PAPER_NOTE = (
+    "As in the paper: stratified points, its three allocations, and paths from the lights, too (bidirectional: of the shares "
+    "of paths from the camera, connections and light traced to the film; weights are balance's over all ways to make a path). "
+    "Beside each the same by paths from the camera alone, where the allocations share the samples of a hit with the weights "
+    "that the paper pairs them with."
+)
 REFERENCE_SEED = 1_000_003  # a stream of its own: nothing is compared with its own samples
 
 WARD_NOTE = (
@@ -44,6 +51,27 @@ class Effort:
     samples: int  # camera samples per pixel, pilot included
     reference_samples: int
     equal_time: bool = False  # the time that Cycles takes for these samples, in place of as many samples
+    as_in_the_paper: bool = False
+
+
+@dataclass
+class Variant:
+    label: str
+    allocation: str
+    integrator: str | None = None  # of the paper's; None: the scene's, with its points
+
+
+def variants(effort: Effort) -> list[Variant]:
+    if effort.as_in_the_paper:
+        return [Variant(f"{a}, {i}", a, i) for i in ("bidirectional", "path") for a in PAPERS]
+    return [Variant(a, a) for a in (ALLOCATIONS[:2] if effort.equal_time else ALLOCATIONS)]
+
+
+def what_light_paths_change(rows: list[table.Row]) -> str:
+    """Error times time of one scene's bidirectional renders, over the same by paths from the camera alone."""
+    cost = {r.allocation: r.rel_mse_trimmed * r.seconds for r in rows if r.rel_mse_trimmed is not None}
+    told = [f"{a} {cost[f'{a}, bidirectional'] / cost[f'{a}, path']:.2f}" for a in PAPERS]
+    return f"{rows[0].scene}: error times time of bidirectional, path being 1: {', '.join(told)}."
 
 
 def wardmis(effort: Effort, allocation: str, samples: int, seed: int, seconds: float | None = None) -> dict[str, Any]:
@@ -136,17 +164,19 @@ def demonstrate(scene: str, out: Path, effort: Effort) -> tuple[list[table.Row],
     say(f"{blend.name}: Cycles")
     by_cycles = blender.render(blend, out / f"{scene}-cycles.exr", cycles(effort))
     seconds = by_cycles.seconds if effort.equal_time else None
-    for allocation in ALLOCATIONS[:2] if effort.equal_time else ALLOCATIONS:
-        say(f"{blend.name}: {allocation}")
-        settings = wardmis(effort, allocation, effort.samples, 1, seconds)
-        image = blender.render(blend, out / f"{scene}-{allocation}.exr", settings)
-        row = figures(scene, allocation, image, truth)
+    for variant in variants(effort):
+        say(f"{blend.name}: {variant.label}")
+        settings = wardmis(effort, variant.allocation, effort.samples, 1, seconds)
+        if variant.integrator:
+            settings |= {"wardmis.integrator": variant.integrator, "wardmis.sampler": "stratified"}
+        image = blender.render(blend, out / f"{scene}-{variant.label.replace(', ', '-')}.exr", settings)
+        row = figures(scene, variant.label, image, truth)
         rows.append(row)
         lines = [
             f"{row.samples_per_pixel} spp, {row.samples:,} samples",
             f"{row.seconds:.1f} s, relMSE {row.rel_mse:.4f}",
         ]
-        columns.append(Column(allocation, image.exr.passes["Combined"], lines))
+        columns.append(Column(variant.label, image.exr.passes["Combined"], lines))
     image = by_cycles
     same = SCENES.get(scene, Scene()).is_cycles_own
     row = figures(scene, table.CYCLES, image, truth if same else None)
@@ -162,13 +192,17 @@ def demonstrate(scene: str, out: Path, effort: Effort) -> tuple[list[table.Row],
     cycles_note = SAME_NOTE if same else WARD_NOTE
 
     height, width = truth_pixels.shape[:2]
+    # six are too many for one sheet
+    of_path, columns = (columns[3:], [*columns[:3], columns[-1]]) if effort.as_in_the_paper else ([], columns)
     lines = [f"{truth.statistics['samples_per_pixel']} spp, another seed", f"own noise: relMSE {noise:.1g}"]
-    contact_sheet(
-        f"{blend.name}   {width} x {height}",
-        Column("reference", truth_pixels, lines),
-        columns,
-        [metrics.FORMULA + ". Seconds: pilot included.", cycles_note],
-    ).save(out / f"{scene}.png", optimize=True)
+    for name, shown in ((scene, columns), (f"{scene}-path", of_path)):
+        if shown:
+            contact_sheet(
+                f"{blend.name}   {width} x {height}",
+                Column("reference", truth_pixels, lines),
+                shown,
+                [metrics.FORMULA + ". Seconds: pilot included.", cycles_note],
+            ).save(out / f"{name}.png", optimize=True)
     return rows, truth_note, cycles_note
 
 
@@ -178,7 +212,11 @@ def main() -> int:
     parser.add_argument("--out", type=Path, default=ROOT / "out" / "demo")
     parser.add_argument("--samples", type=int, default=32, help="camera samples per pixel (%(default)s)")
     parser.add_argument("--reference-samples", type=int, help="of the reference (chosen for each scene)")
-    parser.add_argument("--equal-time", action="store_true", help="of two allocations, in the time that Cycles takes")
+    how = parser.add_mutually_exclusive_group()
+    how.add_argument("--equal-time", action="store_true", help="of two allocations, in the time that Cycles takes")
+    how.add_argument(
+        "--as-in-the-paper", action="store_true", help="its three allocations, with its integrator and its points"
+    )
     parser.add_argument("--percentage", type=int, default=50, help="of the scenes' resolution (%(default)s)")
     arguments = parser.parse_args()
     arguments.out.mkdir(parents=True, exist_ok=True)
@@ -193,14 +231,24 @@ def main() -> int:
     try:
         for scene in arguments.scenes:
             reference_samples = arguments.reference_samples or SCENES.get(scene, Scene()).reference_samples
-            effort = Effort(arguments.percentage, arguments.samples, reference_samples, arguments.equal_time)
+            effort = Effort(
+                arguments.percentage,
+                arguments.samples,
+                reference_samples,
+                arguments.equal_time,
+                arguments.as_in_the_paper,
+            )
             scene_rows, truth_note, cycles_note = demonstrate(scene, arguments.out, effort)
             rows += scene_rows
-            verdicts.append(table.verdict(scene_rows))
+            verdicts.append(table.verdict(scene_rows, scene_rows[0].allocation))
+            if effort.as_in_the_paper:
+                verdicts.append(what_light_paths_change(scene_rows))
             notes.append(truth_note)
             of_cycles.setdefault(cycles_note, []).append(scene)
     except blender.RenderFailed as error:
         sys.exit(f"demo: {error}")
+    if arguments.as_in_the_paper:
+        notes.append(PAPER_NOTE)
     notes = [*verdicts, *notes, *(f"{', '.join(scenes)}: {note}" for note, scenes in of_cycles.items())]
     (arguments.out / "table.md").write_text(table.markdown(rows, notes))
     (arguments.out / "table.json").write_text(table.as_json(rows, notes))

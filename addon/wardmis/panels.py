@@ -119,7 +119,7 @@ class WARDMIS_RENDER_PT_light_paths(RenderPanel, bpy.types.Panel):
         follows = settings.integrator != "direct"
         if settings.integrator == "bidirectional":
             for number in ("light_paths", "connections", "later_connections", "light_tracing"):
-                _row(column, settings.allocation != "auto").prop(settings, number)
+                _row(column, not uses_pilot(settings)).prop(settings, number)
         _row(column, follows).prop(settings, "bounces")
         if settings.bounces == "own":
             for limit in ("max_depth", "max_diffuse", "max_glossy", "max_transmission", "max_transparent"):

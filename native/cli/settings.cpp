@@ -22,8 +22,8 @@ constexpr std::array kAllocations{Allocation::kEqual,
                                   Allocation::kAlbedo,
                                   Allocation::kAuto};
 constexpr std::array kPixelSamples{PixelSamples::kEven, PixelSamples::kByError, PixelSamples::kAuto};
-constexpr std::array kWeights{Weights::kBalance, Weights::kNonbalance, Weights::kPower, Weights::kCutoff,
-                              Weights::kMaximum};
+constexpr std::array kWeights{Weights::kBalance, Weights::kNonbalance, Weights::kPower,
+                              Weights::kCutoff,  Weights::kMaximum,    Weights::kVarianceAware};
 constexpr std::array kIntegrands{Integrand::kSplit, Integrand::kJoint};
 constexpr std::array kIntegrators{Integrator::kDirect, Integrator::kPath, Integrator::kBidirectional};
 constexpr std::array kSamplers{SamplerType::kIndependent, SamplerType::kStratified, SamplerType::kSobol};
@@ -137,11 +137,18 @@ RenderSettings SettingOptions::chosen() const {
                 "--allocation auto with --weights nonbalance: auto predicts the variance for balance weights, and "
                 "would do harm with these",
                 "leave one of them out, or take --allocation standard-deviation, the best for nonbalance weights");
-  if (s.bidirectional() && s.weights && *s.weights != Weights::kBalance && *s.weights != Weights::kPower)
+  if (!s.bidirectional() && s.weights == Weights::kVarianceAware)
+    throw Error(
+        ExitCode::kUsage,
+        "--weights variance-aware: their factors are of ways to make a path, of which there is one without paths "
+        "from the lights",
+        "take --integrator bidirectional, or other weights");
+  if (s.bidirectional() && s.weights && *s.weights != Weights::kBalance && *s.weights != Weights::kPower &&
+      *s.weights != Weights::kVarianceAware)
     throw Error(
         ExitCode::kUsage,
         fmt::format("--integrator bidirectional with --weights {}: its weights are over all ways to make a path, "
-                    "for which there are balance and power",
+                    "for which there are balance, power and variance-aware",
                     weights_),
         "take one of these, or leave --weights out for balance");
   return s;

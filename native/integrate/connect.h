@@ -192,7 +192,7 @@ Connection connect(const RenderScene& world, const CameraVertex& c, const Intera
   ways.of[kAtLater] *= power(c.ways.laterConnections);
   ways += c.end.others(power(double(here.light(x.surface)))) * power(reverse * back);
   ways += Ways::one(join, own);
-  const double weight = own / ways.sum();
+  const double weight = c.ways.weight(join, own, ways);
   return {f * there.f * v.flux * left * static_cast<float>(weight * g / double(there.s.cosLight)), weight, ways};
 }
 

@@ -381,7 +381,7 @@ class HitEstimate {
     Ways ways = shared ? s.others : Ways{};
     ways += Ways::one(kByCamera, 1 / double(mixture_.scale(s.technique, p, used)));
     if (plan_.vertex > 0 || camera.notes->scatter == nullptr)
-      return camera.note(value, ways, ways.of[kByCamera] / ways.sum(), plan_.vertex, 0);
+      return camera.note(value, ways, camera.ways.weight(kByCamera, ways.of[kByCamera], ways), plan_.vertex, 0);
     const float v = luminance(absolute(value * camera.throughput));
     WayScatter& scatter = camera.notes->scatter[s.technique];
     camera.notes->tally.candidates.add(scatter.sums, v, ways);
@@ -446,8 +446,11 @@ class HitEstimate {
     if (s.technique == kLight && otherwise) add(s, kByLight, !s.ahead, s.lit.other, radiance * byLight, visibility);
   }
 
+  // The sum of the densities of paths from the lights that bring the same.
+  double othersOf(const Sample& s) const { return plan_.camera != nullptr ? plan_.camera->ways.others(s.others) : 0; }
+
   float scaleOf(const Sample& s, TechniqueMask used, bool shared) const {
-    if constexpr (kConnects) return mixture_.scale(s.technique, s.p, used, shared ? s.others.sum() : 0);
+    if constexpr (kConnects) return mixture_.scale(s.technique, s.p, used, shared ? othersOf(s) : 0);
     return mixture_.scale(s.technique, s.p, used);
   }
 
@@ -493,7 +496,7 @@ class HitEstimate {
     if constexpr (kConnects) {
       Fractions<K> alone{};
       alone[kLight] = l.pdf;
-      scale = mixture_.scale(kLight, alone, kByLight, s.moved > 0 ? 0 : s.others.sum());
+      scale = mixture_.scale(kLight, alone, kByLight, s.moved > 0 ? 0 : othersOf(s));
       sum_ += total(each) * scale;
       noteWays(s, total(each) * scale, alone, kByLight, !(s.moved > 0));
     } else {

@@ -75,8 +75,9 @@ void addToFilm(const KernelInput<K>& in, const std::vector<LightList>& lists, st
                 in.filter.density({fx - 0.5f - static_cast<float>(x), fy - 0.5f - static_cast<float>(y)});
             if (!(share > 0)) continue;
             const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
-            const Ways ways = s.ways * in.waysAt(x, y).factors(in.samplesPerHit, in.light->power);
-            const auto weight = static_cast<float>(ways.of[kAtFilm] / ways.sum());
+            const PixelWays numbers = in.waysAt(x, y);
+            const Ways ways = s.ways * numbers.factors(in.samplesPerHit, in.light->power);
+            const auto weight = static_cast<float>(numbers.weight(kAtFilm, ways.of[kAtFilm], ways));
             const Rgb value = s.value * (weight * share / (side * side));
             film[pixel] += value;
             if (in.wayPilot != nullptr) in.wayPilot->note(pixel, value, ways, double(weight), 0, s.surfaces);

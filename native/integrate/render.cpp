@@ -312,10 +312,7 @@ FilmBuffer renderWith(const BuiltScene& built, const RenderSettings& settings, c
   stats.techniqueNames = built.techniqueNames();
   if ((setup.needs & kNeedsConnections) != 0) {
     if (ways.counts.paths > 0) setup.useWays(ways.counts, ways.map.squares.empty() ? nullptr : &ways.map);
-    const FromLights& asked = settings.fromLights;
-    stats.ways = ways.counts.paths > 0
-                     ? ways.counts
-                     : WayCounts{1, asked.paths, double(asked.connections), double(asked.laterConnections)};
+    stats.ways = ways.counts.paths > 0 ? ways.counts : settings.fromLights.counts();
     if (ways.map.squares.empty()) stats.ways->atHit = double(setup.input.samplesPerHit) / settings.samplesPerHit;
     stats.lightTracing = setup.input.light->toFilm;
   }

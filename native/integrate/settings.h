@@ -9,6 +9,7 @@
 #include "integrate/plan.h"
 #include "math/random.h"
 #include "mis/allocation.h"
+#include "mis/ways.h"
 #include "scene/scene.h"
 
 namespace wardmis {
@@ -47,6 +48,8 @@ struct FromLights {
   double paths = 1;                           // for each camera sample of a pixel
   int connections = 1, laterConnections = 1;  // with their vertices, of the first vertex of a camera path and of others
   bool film = true;                           // they are traced to the film, too
+
+  WayCounts counts() const { return {1, paths, double(connections), double(laterConnections)}; }
 };
 
 struct RenderSettings {

@@ -89,6 +89,11 @@ Integrand integrandOf(const RenderSettings& s, uint32_t needs) {
   return (needs & kNeedsConnections) != 0 ? Integrand::kJoint : s.integrand;
 }
 
+// Variance-aware factors are of groups of ways, and come in beside these.
+Weights hitWeights(const RenderSettings& s) {
+  return s.weightRule() == Weights::kVarianceAware ? Weights::kBalance : s.weightRule();
+}
+
 std::optional<RenderScene> alone(const BuiltScene& built, const RenderScene& world, uint32_t needs) {
   if (!built.catchers) return std::nullopt;
   const BuiltScene::Catchers& c = *built.catchers;
@@ -190,7 +195,7 @@ RenderSetup<K>::RenderSetup(const BuiltScene& built, const RenderSettings& s)
             equalFractions<K>(integrandOf(s, needs), techniques),
             s.allocation,
             integrandOf(s, needs),
-            s.weightRule(),
+            hitWeights(s),
             candidates_,
             givenCost<K>(s.cost),
             s.samplesPerHit,
@@ -210,7 +215,7 @@ RenderSetup<K>::RenderSetup(const BuiltScene& built, const RenderSettings& s)
   light_->verticesPerPath = verticesPerPath<K>(input);
   light_->toFilm = s.fromLights.film && camera_.seesBack();
   samplesPerHit_ = s.samplesPerHit;
-  useWays({1, s.fromLights.paths, double(s.fromLights.connections), double(s.fromLights.laterConnections)}, nullptr);
+  useWays(s.fromLights.counts(), nullptr);
 }
 
 template <size_t K>

@@ -193,15 +193,36 @@ void share(const WayTally& tally, const FilmBuffer& film, const RenderSetup<K>& 
                    std::round(shares[kAtFirst] * each), std::round(shares[kAtLater] * each)};
 }
 
+// How far each group is to be trusted, of each pixel from those around.
 template <size_t K>
-WayChoice chooseWays(RenderSetup<K>& setup, Allocation rule, double minimum, uint32_t expected,
-                     const std::function<bool()>& stopped) {
+void trust(const WayTally& tally, const FilmBuffer& film, const RenderSetup<K>& setup, WayChoice& choice) {
+  constexpr int kRadius = 3;
+  const WayCounts& n = choice.counts;
+  if (choice.map.squares.empty()) {
+    const PixelWays all{setup.samplesAtHit(n), static_cast<int>(n.connections), static_cast<int>(n.laterConnections)};
+    choice.map = {kSide, film.width, std::vector<PixelWays>(tally.groups.size(), all)};
+  }
+  tbb::parallel_for(0, film.height, [&](int y) {
+    for (int x = 0; x < film.width; ++x) {
+      std::vector<const GroupSums*> around;
+      for (int v = std::max(0, y - kRadius); v <= std::min(film.height - 1, y + kRadius); ++v)
+        for (int u = std::max(0, x - kRadius); u <= std::min(film.width - 1, x + kRadius); ++u)
+          around.push_back(&tally.groups[static_cast<size_t>(v * film.width + u)]);
+      choice.map.squares[static_cast<size_t>(y * film.width + x)].trust = varianceAware(around, film.samples);
+    }
+  });
+}
+
+template <size_t K>
+WayChoice chooseWays(RenderSetup<K>& setup, const WayCounts& asked, Allocation rule, bool aware, double minimum,
+                     uint32_t expected, const std::function<bool()>& stopped) {
   const auto samples =
       static_cast<uint32_t>(std::clamp(kShare * double(expected) * kSide * kSide, double(kLeast), double(kMost)));
   FilmBuffer film = setup.film(kSide);
   WayTally tally;
   tally.pixels.resize(film.pixels.size());
   if (rule != Allocation::kAuto) tally.moments.resize(film.pixels.size());
+  if (aware) tally.groups.resize(film.pixels.size());
   setup.beginWayNotes(tally, kSide, {1, 1, 1, 1}, nullptr);
   tbb::enumerable_thread_specific<Counts> counts;
   const auto own = [&]() -> Counts& { return counts.local(); };
@@ -210,6 +231,7 @@ WayChoice chooseWays(RenderSetup<K>& setup, Allocation rule, double minimum, uin
     setup.traceLightOf(s, own);
     renderTiles<K>(setup, film, 1, nullptr, own, tiles, stopped);
     ++film.samples;
+    tally.endSample();
   }
   setup.endWayNotes();
   WayChoice choice;
@@ -217,8 +239,11 @@ WayChoice chooseWays(RenderSetup<K>& setup, Allocation rule, double minimum, uin
   if (stopped()) return choice;
   if (rule == Allocation::kAuto)
     choose(tally, film, setup, choice);
-  else
+  else if (needsMoments(rule))
     share(tally, film, setup, rule, minimum, choice);
+  else
+    choice.counts = asked;
+  if (aware && choice.counts.paths > 0) trust(tally, film, setup, choice);
   return choice;
 }
 
@@ -227,11 +252,13 @@ WayChoice chooseWays(RenderSetup<K>& setup, Allocation rule, double minimum, uin
 template <size_t K>
 WayChoice waysOf(const BuiltScene& built, const RenderSettings& settings, uint32_t expected,
                  const std::function<bool()>& stopped) {
-  if (!settings.bidirectional() || !needsMoments(settings.allocation)) return {};
+  const bool aware = settings.weightRule() == Weights::kVarianceAware;
+  if (!settings.bidirectional() || (!needsMoments(settings.allocation) && !aware)) return {};
   RenderSetup<K> setup(built, settings);
   if ((setup.needs & kNeedsConnections) == 0) return {};
   setup.drawFrom({SamplerType::kIndependent, ~settings.seed, 1});
-  WayChoice choice = chooseWays<K>(setup, settings.allocation, double(settings.minFraction), expected, stopped);
+  WayChoice choice = chooseWays<K>(setup, settings.fromLights.counts(), settings.allocation, aware,
+                                   double(settings.minFraction), expected, stopped);
   choice.asked = true;
   return choice;
 }

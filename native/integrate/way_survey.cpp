@@ -37,7 +37,7 @@ WaySurvey surveyWith(const BuiltScene& built, const RenderSettings& settings, ui
     setup.traceLightOf(survey.samples, own);
     renderTiles<K>(setup, film, 1, nullptr, own, tiles, stopped);
     ++film.samples;
-    tally.images->endSample();
+    tally.endSample();
   }
   setup.endWayNotes();
   survey.width = film.width, survey.height = film.height;

@@ -109,4 +109,19 @@ std::array<double, kJoins> wayShares(Allocation rule, const std::vector<WayMomen
   return shares;
 }
 
+std::array<float, kJoins> varianceAware(const std::vector<const GroupSums*>& pixels, uint32_t samples) {
+  constexpr double kMost = 16;
+  const double n = samples;
+  std::array<float, kJoins> v{};
+  for (size_t j = 0; j < kJoins; ++j) {
+    double second = 0, variance = 0;
+    for (const GroupSums* p : pixels) {
+      const double mean = double(p->sum[j]) / n, square = double(p->squares[j]) / n;
+      second += square, variance += std::max(0.0, square - mean * mean) * n / std::max(n - 1, 1.0);
+    }
+    v[j] = static_cast<float>(second > 0 ? std::clamp(second / std::max(variance, second / kMost), 1.0, kMost) : 1);
+  }
+  return v;
+}
+
 }  // namespace wardmis

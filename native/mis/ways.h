@@ -29,6 +29,22 @@ struct WayCounts {
 struct PixelWays {
   int samples = 0;  // of the camera's techniques at its first hit
   int connections = 0, laterConnections = 0;
+  // What the weights multiply each group's densities by (Grittmann, Georgiev, Slusallek and Krivanek 2019,
+  // "Variance-aware multiple importance sampling"): variance-aware ones, else 1.
+  std::array<float, kJoins> trust{1, 1, 1, 1};
+
+  // The weight of a way of density `own`, of a group.
+  double weight(Join join, double own, const Ways& all) const {
+    double sum = 0;
+    for (size_t j = 0; j < kJoins; ++j) sum += double(trust[j]) * all.of[j];
+    return double(trust[join]) * own / sum;
+  }
+  // The sum of other ways' densities, with the camera's own as unit.
+  double others(const Ways& w) const {
+    double sum = 0;
+    for (size_t j = 0; j < kJoins; ++j) sum += double(trust[j]) * w.of[j];
+    return sum / double(trust[kByCamera]);
+  }
 
   // How much larger than with `asked` samples at a hit and one connection the densities of a group are.
   std::array<double, kJoins> factors(int asked, WeightPower power) const {
@@ -104,6 +120,18 @@ std::array<double, kJoins> wayShares(Allocation, const std::vector<WayMoments>& 
                                      const std::vector<double>& means, uint32_t samples, uint32_t available,
                                      double least);
 
+// Of one camera sample after the other what each group brings to a pixel, and from these how far it is to be trusted.
+struct GroupSums {
+  std::array<float, kJoins> now{}, sum{}, squares{};
+
+  void endSample() {
+    for (size_t j = 0; j < kJoins; ++j) sum[j] += now[j], squares[j] += now[j] * now[j], now[j] = 0;
+  }
+};
+// v_j = second moment / variance of what group j brings in one sample of a pixel, with balance weights: sums over
+// pixels (of the latter, too, since each has a mean of its own). Never more than 16, as far as few samples can tell.
+std::array<float, kJoins> varianceAware(const std::vector<const GroupSums*>& pixels, uint32_t samples);
+
 // What a pilot notes.
 struct WayTally {
   struct Pixel {
@@ -116,10 +144,18 @@ struct WayTally {
   std::vector<WayMoments> moments;  // where shares are wanted,
   std::optional<WayImages> images;  // or what each way brings; else the candidates are asked
 
+  std::vector<GroupSums> groups;  // of each pixel, where the weights want them
+
   bool asksCandidates() const { return moments.empty() && !images; }
+  void endSample() {
+    for (GroupSums& g : groups) g.endSample();
+    if (images) images->endSample();
+  }
   // A sample's value, with its weight; byLight: surfaces that a path from a light made.
   void note(size_t pixel, Rgb value, const Ways& ways, double weight, int byCamera, int byLight) {
     const float v = luminance(absolute(value));
+    if (!groups.empty())
+      groups[pixel].now[byLight == 0 ? kByCamera : byCamera == 0 ? kAtFilm : byCamera == 1 ? kAtFirst : kAtLater] += v;
     if (images)
       images->add(pixel, byCamera + byLight, byCamera, value, weight);
     else if (!moments.empty())
