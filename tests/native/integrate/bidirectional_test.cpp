@@ -2,6 +2,8 @@
 // Paths from both ends against paths from the camera alone: the same image, whatever carries it.
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <fstream>
 #include <map>
 
 #include "integrate/light_paths.h"
@@ -419,6 +421,66 @@ TEST(Bidirectional, PilotsShowTheSame) {
       EXPECT_LT(worstZ(got, expected), 5.5) << name(rule) << ' ' << name(weights);
     }
   }
+}
+
+TEST(Bidirectional, EndsAsItIsAskedTo) {
+  const Scene scene = lampUnderCeiling(true);
+  RenderSettings s = settings(Integrator::kBidirectional, 1 << 20);
+  s.allocation = Allocation::kAuto;
+  Statistics statistics;
+  const auto seconds = [&] { return statistics.pilotSeconds + statistics.renderSeconds; };
+  s.seconds = 0.5;
+  EXPECT_GT(renderScene(scene, s, &statistics).samples, 1u);
+  EXPECT_TRUE(statistics.ways.has_value());
+  EXPECT_LT(seconds(), 1.0);
+  s.seconds = 0, s.targetError = 0.05, statistics = {};
+  const FilmBuffer good = renderScene(scene, s, &statistics);
+  ASSERT_TRUE(statistics.error.has_value());
+  EXPECT_LE(statistics.error->upper, s.targetError);
+  EXPECT_LT(good.samples, 1u << 12);
+  s.targetError = 0;
+  // what is seen on the way, and the end that somebody asks for then
+  for (const Stop how : {Stop::kKeep, Stop::kDiscard}) {
+    std::atomic<Stop> stop{Stop::kNo};
+    int seen = 0;
+    RenderObserver observer;
+    observer.stop = &stop;
+    observer.image = [&](const FilmBuffer& film, int side) {
+      if (side > 1) return;
+      ++seen;
+      if (film.samples >= 2) stop = how;
+    };
+    statistics = {};
+    const FilmBuffer film = render(scene, s, statistics, observer);
+    EXPECT_GT(seen, 0);
+    EXPECT_GE(film.samples, 2u);
+    EXPECT_LT(film.samples, 1u << 12);
+  }
+}
+
+// Bytes that the process has in memory.
+double resident() {
+  std::ifstream file("/proc/self/statm");
+  double pages = 0;
+  file >> pages >> pages;
+  return pages * 4096;
+}
+
+TEST(Bidirectional, ManyFramesTakeNoMoreMemory) {
+  constexpr int kFrames = 250;
+  Scene scene = cases()[1].scene;
+  RenderSettings s = settings(Integrator::kBidirectional, 1);
+  s.allocation = Allocation::kAuto, s.weights = Weights::kVarianceAware;
+  s.fromLights.paths = 64;
+  double before = 0;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    if (frame == 50) before = resident();
+    s.allocation = frame % 2 == 0 ? Allocation::kAuto : Allocation::kEqual;
+    s.seed = static_cast<uint64_t>(frame);
+    scene.lights[0].toWorld.t.x = 0.5f - 0.001f * static_cast<float>(frame);
+    renderScene(scene, s);
+  }
+  EXPECT_LT(resident() - before, 4e6);
 }
 
 // Where nothing is to be had by them, the image is that of paths from the camera.
