@@ -29,17 +29,21 @@ from parts import (  # noqa: E402
 
 def main(folder, names):
     for name in names:
-        kind, _, number = name.rpartition("-")
-        if kind in NUMBERED and number.isdigit():
-            NUMBERED[kind](int(number))
-        elif name in SCENES:
-            SCENES[name]()
-        elif kind and number == "guided":
-            (SCENES[kind] if kind in SCENES else lambda: opened(kind))()
-            bpy.context.scene.cycles.use_guiding = True
-        else:
-            opened(name)
+        make(name)
         bpy.ops.wm.save_as_mainfile(filepath=str(Path(folder) / f"{name}.blend"), compress=True)
+
+
+def make(name):
+    kind, _, number = name.rpartition("-")
+    if kind and number == "guided":  # the same, for Cycles' path guiding
+        make(kind)
+        bpy.context.scene.cycles.use_guiding = True
+    elif kind in NUMBERED and number.isdigit():
+        NUMBERED[kind](int(number))
+    elif name in SCENES:
+        SCENES[name]()
+    else:
+        opened(name)
 
 
 def opened(name, integrator="path"):
