@@ -427,7 +427,8 @@ FilmBuffer renderInArena(const BuiltScene& built, const RenderSettings& settings
     RenderSettings chosen = settings;
     const Clocks start{wallSeconds(), cpuSeconds()};
     const auto stopped = [&] { return observer.stop != nullptr && observer.stop->load() != Stop::kNo; };
-    const WayChoice ways = waysOf<k()>(built, settings, settings.open() ? kUsualSamples : countOf(settings), stopped);
+    const WayChoice ways =
+        waysOf<k()>(built, settings, settings.open() ? kUsualSamples : settings.spp, stopped);  // alike for all parts
     if (ways.asked) {
       if (!(ways.counts.paths > 0)) {
         chosen.integrator = Integrator::kPath;

@@ -15,7 +15,7 @@ template <size_t K>
 WaySurvey surveyWith(const BuiltScene& built, const RenderSettings& settings, uint32_t samples, int across,
                      const std::function<bool()>& stopped) {
   WaySurvey survey;
-  const WayChoice choice = waysOf<K>(built, settings, settings.range().count(), stopped);
+  const WayChoice choice = waysOf<K>(built, settings, settings.spp, stopped);
   if (choice.asked && !(choice.counts.paths > 0)) return survey;
   RenderSetup<K> setup(built, settings);
   if ((setup.needs & kNeedsConnections) == 0) return survey;

@@ -163,6 +163,23 @@ double worstZ(const Blocks& a, const Blocks& b) {
   return worst;
 }
 
+// A lamp over a floor, and one in a box without a lid, under a ceiling.
+Scene lampUnderCeiling(bool boxed) {
+  const Material white = matte({0.8f, 0.8f, 0.8f});
+  Scene scene;
+  scene.materials = {white};
+  addPlane(scene, 3, 0);
+  if (boxed) addWall(scene, {0, 0, 3}, {0, 0, -1}, 3, 0);
+  if (boxed)
+    for (const Vec3f n : {Vec3f{1, 0, 0}, Vec3f{-1, 0, 0}, Vec3f{0, 1, 0}, Vec3f{0, -1, 0}})
+      addWall(scene, Vec3f{0, 0, 1} - n * 0.3f, n, 0.3f, 0);
+  if (boxed) addWall(scene, {0, 0, 0.7f}, {0, 0, 1}, 0.3f, 0);
+  scene.lights = {pointLamp({0, 0, 0.8f}, 0.05f)};
+  lookFrom(scene, 0.8f, 1, 32);
+  scene.camera->clipNear = 47;  // from below the ceiling
+  return scene;
+}
+
 struct Ways {
   const char* name;
   FromLights from;
@@ -353,36 +370,23 @@ TEST(Bidirectional, ImagesAreThoseOfAnyThreads) {
   }
 }
 
+// A pilot, too, is the same for each part, by any threads.
 TEST(Bidirectional, PartsAreThoseOfTheWhole) {
-  const Scene scene = cases()[2].scene;
-  RenderSettings s = settings(Integrator::kBidirectional, 8);
-  const FilmBuffer whole = renderScene(scene, s);
-  s.part = SampleRange{0, 3};
-  const FilmBuffer first = renderScene(scene, s);
-  s.part = SampleRange{3, 8};
-  const FilmBuffer second = renderScene(scene, s);
-  for (size_t i = 0; i < whole.pixels.size(); ++i) {
-    RgbSum sum = first.pixels[i].sum;
-    sum += second.pixels[i].sum;
-    for (size_t c = 0; c < 3; ++c) EXPECT_EQ(sum[c], whole.pixels[i].sum[c]);
+  for (const Allocation rule : {Allocation::kEqual, Allocation::kAuto, Allocation::kVariance}) {
+    const Scene scene = rule == Allocation::kAuto ? lampUnderCeiling(true) : cases()[2].scene;
+    RenderSettings s = settings(Integrator::kBidirectional, 100);
+    s.allocation = rule;
+    const FilmBuffer whole = renderScene(scene, s);
+    s.part = SampleRange{0, 3}, s.threads = 1;
+    const FilmBuffer first = renderScene(scene, s);
+    s.part = SampleRange{3, 100}, s.threads = 7;
+    const FilmBuffer second = renderScene(scene, s);
+    for (size_t i = 0; i < whole.pixels.size(); ++i) {
+      RgbSum sum = first.pixels[i].sum;
+      sum += second.pixels[i].sum;
+      for (size_t c = 0; c < 3; ++c) ASSERT_EQ(sum[c], whole.pixels[i].sum[c]) << name(rule);
+    }
   }
-}
-
-// A lamp over a floor, and one in a box without a lid, under a ceiling.
-Scene lampUnderCeiling(bool boxed) {
-  const Material white = matte({0.8f, 0.8f, 0.8f});
-  Scene scene;
-  scene.materials = {white};
-  addPlane(scene, 3, 0);
-  if (boxed) addWall(scene, {0, 0, 3}, {0, 0, -1}, 3, 0);
-  if (boxed)
-    for (const Vec3f n : {Vec3f{1, 0, 0}, Vec3f{-1, 0, 0}, Vec3f{0, 1, 0}, Vec3f{0, -1, 0}})
-      addWall(scene, Vec3f{0, 0, 1} - n * 0.3f, n, 0.3f, 0);
-  if (boxed) addWall(scene, {0, 0, 0.7f}, {0, 0, 1}, 0.3f, 0);
-  scene.lights = {pointLamp({0, 0, 0.8f}, 0.05f)};
-  lookFrom(scene, 0.8f, 1, 32);
-  scene.camera->clipNear = 47;  // from below the ceiling
-  return scene;
 }
 
 TEST(Bidirectional, AutomaticTakesLightPathsWhereTheyPay) {
