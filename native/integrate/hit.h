@@ -383,6 +383,7 @@ class HitEstimate {
     if (plan_.vertex > 0 || camera.notes->scatter == nullptr)
       return camera.note(value, ways, camera.ways.weight(kByCamera, ways.of[kByCamera], ways), plan_.vertex, 0);
     const float v = luminance(absolute(value * camera.throughput));
+    camera.notes->tally.noteGroup(camera.notes->pixel, v, kByCamera);
     WayScatter& scatter = camera.notes->scatter[s.technique];
     camera.notes->tally.candidates.add(scatter.sums, v, ways);
     scatter.sum += v, scatter.squares += v * v;

@@ -57,7 +57,6 @@ struct RenderSetup {
   FilmBuffer film(int side = 1) const;  // an empty one, of the border's size; side: of its pixels, in the image's
   // Instead of the settings' own points.
   void drawFrom(const Sampler& sampler) { sampler_ = sampler; }
-  // Light samples tell `learning` whether they are seen, and are drawn by what `lights` knows of that; null: neither.
   // Paths from the lights, where the integrator wants them and the scene allows; with these none while `on` is false.
   void connectLights(bool on) { input.light = on && light_ ? &*light_ : nullptr; }
   // Notes of a film with pixels of `side` of the image's, with these numbers for each of them.
@@ -67,6 +66,7 @@ struct RenderSetup {
   int samplesAtHit(const WayCounts& counts) const;
   // Those of a camera sample, unless they are there.
   void traceLightOf(uint32_t sample, const std::function<Counts&()>& counts);
+  // Light samples tell `learning` whether they are seen, and are drawn by what `lights` knows of that; null: neither.
   void drawLights(const LightVisibility* lights, LightVisibility* learning) {
     world_.lights = lights, world_.learning = learning;
   }

@@ -202,13 +202,16 @@ void trust(const WayTally& tally, const FilmBuffer& film, const RenderSetup<K>& 
     const PixelWays all{setup.samplesAtHit(n), static_cast<int>(n.connections), static_cast<int>(n.laterConnections)};
     choice.map = {kSide, film.width, std::vector<PixelWays>(tally.groups.size(), all)};
   }
+  const auto index = [&](int x, int y) {
+    return static_cast<size_t>(y) * static_cast<size_t>(film.width) + static_cast<size_t>(x);
+  };
   tbb::parallel_for(0, film.height, [&](int y) {
     for (int x = 0; x < film.width; ++x) {
       std::vector<const GroupSums*> around;
       for (int v = std::max(0, y - kRadius); v <= std::min(film.height - 1, y + kRadius); ++v)
         for (int u = std::max(0, x - kRadius); u <= std::min(film.width - 1, x + kRadius); ++u)
-          around.push_back(&tally.groups[static_cast<size_t>(v * film.width + u)]);
-      choice.map.squares[static_cast<size_t>(y * film.width + x)].trust = varianceAware(around, film.samples);
+          around.push_back(&tally.groups[index(u, v)]);
+      choice.map.squares[index(x, y)].trust = varianceAware(around, film.samples);
     }
   });
 }

@@ -151,11 +151,13 @@ struct WayTally {
     for (GroupSums& g : groups) g.endSample();
     if (images) images->endSample();
   }
+  void noteGroup(size_t pixel, float v, Join join) {
+    if (!groups.empty()) groups[pixel].now[join] += v;
+  }
   // A sample's value, with its weight; byLight: surfaces that a path from a light made.
   void note(size_t pixel, Rgb value, const Ways& ways, double weight, int byCamera, int byLight) {
     const float v = luminance(absolute(value));
-    if (!groups.empty())
-      groups[pixel].now[byLight == 0 ? kByCamera : byCamera == 0 ? kAtFilm : byCamera == 1 ? kAtFirst : kAtLater] += v;
+    noteGroup(pixel, v, byLight == 0 ? kByCamera : byCamera == 0 ? kAtFilm : byCamera == 1 ? kAtFirst : kAtLater);
     if (images)
       images->add(pixel, byCamera + byLight, byCamera, value, weight);
     else if (!moments.empty())

@@ -27,7 +27,7 @@ RgbImage pyramid(const WaySurvey& survey, std::vector<Rgb> WaySurvey::Way::*part
     const int x0 = (way.surfaces - way.byCamera) * survey.width, y0 = (way.surfaces - 1) * survey.height;
     for (int y = 0; y < survey.height; ++y)
       for (int x = 0; x < survey.width; ++x) {
-        const Rgb c = (way.*part)[static_cast<size_t>(y * survey.width + x)];
+        const Rgb c = (way.*part)[static_cast<size_t>(y) * static_cast<size_t>(survey.width) + static_cast<size_t>(x)];
         float* const to = &image.rgb[3 * (static_cast<size_t>(y0 + y) * static_cast<size_t>(image.width) +
                                           static_cast<size_t>(x0 + x))];
         to[0] = c.x, to[1] = c.y, to[2] = c.z;

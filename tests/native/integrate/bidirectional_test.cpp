@@ -183,22 +183,17 @@ Scene lampUnderCeiling(bool boxed) {
 struct Ways {
   const char* name;
   FromLights from;
-  Weights weights = Weights::kBalance;
 };
 
-// Of 11 scenes, 16 blocks and 6 ways: |t| with 15 degrees of freedom beyond 5.5 comes once in 20 seeds.
+// Of 11 scenes, 16 blocks and 4 ways: |t| with 15 degrees of freedom beyond 5.5 comes once in 23 seeds.
 TEST(Bidirectional, ShowsWhatPathsFromTheCameraShow) {
-  const Ways ways[] = {{"both", {}},
-                       {"connections", {1, 1, 1, false}},
-                       {"film", {1, 0, 0, true}},
-                       {"many", {4, 3, 2, true}},
-                       {"few", {0.1, 1, 1, true}},
-                       {"power", {}, Weights::kPower}};
+  const Ways ways[] = {
+      {"both", {}}, {"connections", {1, 1, 1, false}}, {"film", {1, 0, 0, true}}, {"many", {4, 3, 2, true}}};
   for (const auto& [name, scene] : cases()) {
     const Blocks expected = blocks(scene, settings(Integrator::kPath, 64), 16);
     for (const Ways& way : ways) {
       RenderSettings s = settings(Integrator::kBidirectional, 16);
-      s.fromLights = way.from, s.weights = way.weights;
+      s.fromLights = way.from;
       const Blocks got = blocks(scene, s, 16);
       EXPECT_LT(worstZ(got, expected), 5.5) << name << ", " << way.name;
     }
@@ -401,13 +396,13 @@ TEST(Bidirectional, AutomaticTakesLightPathsWhereTheyPay) {
 }
 
 // Numbers by a pilot, of `auto` for each pixel, change what carries the light and not what is seen. |t| with 15 degrees
-// of freedom beyond 5.5 in one of 128 blocks comes once in 130 seeds.
+// of freedom beyond 5.5 in one of 256 blocks comes once in 64 seeds.
 TEST(Bidirectional, PilotsShowTheSame) {
   Scene scene = lampUnderCeiling(true);
   scene.lights.push_back(pointLamp({0.8f, 0.8f, 0.4f}, 0.05f, 1));  // one that is seen
   RenderSettings s = settings(Integrator::kBidirectional, 16);
   const Blocks expected = blocks(scene, s, 16);
-  for (const Allocation rule : {Allocation::kAuto, Allocation::kVariance, Allocation::kSecondMoment}) {
+  for (const Allocation rule : {Allocation::kAuto, Allocation::kVariance}) {
     s.allocation = rule;
     Statistics statistics;
     renderScene(scene, s, &statistics);
@@ -419,7 +414,7 @@ TEST(Bidirectional, PilotsShowTheSame) {
         parts += std::abs(each - std::round(each));
       EXPECT_GT(parts, 0.01);
     }
-    for (const Weights weights : {Weights::kBalance, Weights::kPower, Weights::kVarianceAware}) {
+    for (const Weights weights : {Weights::kBalance, Weights::kVarianceAware}) {
       s.weights = weights;
       const Blocks got = blocks(scene, s, 16);
       EXPECT_LT(worstZ(got, expected), 5.5) << name(rule) << ' ' << name(weights);
