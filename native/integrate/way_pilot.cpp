@@ -176,21 +176,19 @@ void choose(const WayTally& tally, const FilmBuffer& film, const RenderSetup<K>&
   choice.counts = {sum.atHit / n, sum.paths, sum.connections / n, sum.laterConnections / n};
 }
 
-// Numbers in proportion to the shares of an allocation, as many in all as with one of each.
-template <size_t K>
-void share(const WayTally& tally, const FilmBuffer& film, const RenderSetup<K>& setup, Allocation rule, double minimum,
-           WayChoice& choice) {
+// Numbers in proportion to the shares of an allocation, as many in all as with one of each that is asked for.
+void share(const WayTally& tally, const FilmBuffer& film, const WayCounts& asked, bool toFilm, Allocation rule,
+           double minimum, WayChoice& choice) {
   uint32_t groups = 1u << kByCamera;
-  const LightPaths& light = *setup.input.light;
-  if (light.connections > 0) groups |= 1u << kAtFirst;
-  if (light.laterConnections > 0) groups |= 1u << kAtLater;
-  if (light.toFilm) groups |= 1u << kAtFilm;
+  if (asked.connections > 0) groups |= 1u << kAtFirst;
+  if (asked.laterConnections > 0) groups |= 1u << kAtLater;
+  if (toFilm) groups |= 1u << kAtFilm;
   std::vector<double> means;
   for (const auto& p : film.pixels) means.push_back(double(luminance(absolute(film.mean(p)))));
   const auto shares = wayShares(rule, tally.moments, means, film.samples, groups, minimum);
   const double each = std::popcount(groups);
-  choice.counts = {shares[kByCamera] * each, std::max(shares[kAtFilm] * each, light.toFilm ? 0 : 1.0),
-                   std::round(shares[kAtFirst] * each), std::round(shares[kAtLater] * each)};
+  choice.counts = {shares[kByCamera] * each, toFilm ? shares[kAtFilm] * each : 1, std::round(shares[kAtFirst] * each),
+                   std::round(shares[kAtLater] * each)};
 }
 
 // How far each group is to be trusted, of each pixel from those around.
@@ -243,7 +241,7 @@ WayChoice chooseWays(RenderSetup<K>& setup, const WayCounts& asked, Allocation r
   if (rule == Allocation::kAuto)
     choose(tally, film, setup, choice);
   else if (needsMoments(rule))
-    share(tally, film, setup, rule, minimum, choice);
+    share(tally, film, asked, setup.input.light->toFilm, rule, minimum, choice);
   else
     choice.counts = asked;
   if (aware && choice.counts.paths > 0) trust(tally, film, setup, choice);

@@ -420,6 +420,12 @@ TEST(Bidirectional, PilotsShowTheSame) {
       EXPECT_LT(worstZ(got, expected), 5.5) << name(rule) << ' ' << name(weights);
     }
   }
+  // a group that is not asked for has no share
+  s.weights = Weights::kBalance, s.fromLights.connections = 0;
+  Statistics statistics;
+  renderScene(scene, s, &statistics);
+  ASSERT_TRUE(statistics.ways.has_value());
+  EXPECT_EQ(statistics.ways->connections, 0);
 }
 
 TEST(Bidirectional, EndsAsItIsAskedTo) {
