@@ -99,6 +99,12 @@ WEIGHTS = (
     ),
     ("cutoff", "Cutoff", "As Balance, without the techniques whose density is below a tenth of the largest"),
     ("maximum", "Maximum", "The technique with the largest density alone. For study"),
+    (
+        "variance-aware",
+        "Variance-Aware",
+        "Of the integrator Bidirectional alone: as Balance, but ways to make a path count more where they scatter less, as "
+        "Grittmann and others have it",
+    ),
 )
 INTEGRANDS = (
     (
