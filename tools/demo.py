@@ -28,8 +28,8 @@ SCENES = {"teapot": Scene(), "veach": Scene(1024), "studio": Scene(256, is_cycle
 ALLOCATIONS = ("equal", "auto", "variance", "second-moment")
 PAPERS = ("equal", "variance", "second-moment")  # Lopez Garces and Kong's, in the integrator and of the points they had
 PAPER_NOTE = (
-    "As in the paper: stratified points, its three allocations, and paths from the lights, too (bidirectional: of the shares "
-    "of paths from the camera, connections and light traced to the film; weights are balance's over all ways to make a path). "
+    "As in the paper: stratified points, its three allocations, and paths from the lights, too (bidirectional: the allocations "
+    "share samples among the camera's paths, connections and light traced to the film; weights are balance's over all ways). "
     "Beside each the same by paths from the camera alone, where the allocations share the samples of a hit with the weights "
     "that the paper pairs them with."
 )

@@ -56,7 +56,6 @@ std::array<double, kJoins> wayShares(Allocation rule, const std::vector<WayMomen
   };
   const double n = samples;
   std::array<double, kJoins> shares{};
-  // sums: of moments relative to each pixel's mean
   const auto addShares = [&](uint32_t mask, const IntegrandMoments& known, double demand) {
     const std::vector<size_t> groups = groupsOf(mask);
     const Densities a = fractions(rule, known);
